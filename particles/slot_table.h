@@ -1,0 +1,103 @@
+// Slots with generations: what makes a handle go stale. Shared by the particle pool and the object pools; holds no payload.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <froude/base/aligned.h>
+#include <froude/base/archive.h>
+#include <froude/base/error.h>
+
+namespace froude {
+
+/// What a full pool does: `Fixed` refuses, `Grow` adds its initial size, `RecycleOldest` releases the oldest live entry.
+enum class GrowthPolicy { Fixed, Grow, RecycleOldest };
+
+/// Definition of a pool.
+struct PoolSettings {
+  std::size_t initialCapacity = 1024;  ///< entries, 1 … 2³¹; also the step by which `Grow` grows
+  GrowthPolicy policy = GrowthPolicy::Grow;
+  std::string name = "pool";  ///< appears in errors and as the section of saved state
+};
+
+/// A full `Fixed` pool, a stale or doubled release, a definition that cannot be met.
+class PoolError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What happened to a pool since it was made; part of its saved state.
+struct PoolCounters {
+  std::uint64_t created = 0;
+  std::uint64_t released = 0;  ///< all that went, the recycled ones included
+  std::uint64_t recycled = 0;  ///< released by RecycleOldest to make room
+  std::uint64_t refused = 0;   ///< creations that a full pool turned down
+};
+
+/// Hands out slot numbers. A slot's generation is odd while it is live and even while it is free, and rises with every
+/// change, so that {slot, generation} names one life of a slot; generation 0 was never handed out. Free slots form a
+/// circular list, first in, first out: a generation is reused as late as possible. All operations are O(1) unless said
+/// otherwise and allocate nothing, `grow` and `purge` excepted. Not for use from several threads at once.
+class SlotTable {
+ public:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
+  /// `tracksAge` keeps the live slots in order of birth (two words a slot), for `oldest`.
+  SlotTable(std::size_t capacity, bool tracksAge);
+
+  std::size_t capacity() const { return generation_.size(); }
+  std::size_t liveCount() const { return generation_.size() - freeCount_; }
+  bool full() const { return freeCount_ == 0; }
+  std::uint32_t generation(std::uint32_t slot) const { return generation_[slot]; }
+  bool isLive(std::uint32_t slot) const { return (generation_[slot] & 1u) != 0; }
+  /// True for the one life of the slot that {slot, generation} names; false for anything else, null included.
+  bool isLive(std::uint32_t slot, std::uint32_t generation) const {
+    return slot < generation_.size() && (generation & 1u) != 0 && generation_[slot] == generation;
+  }
+
+  /// Takes the slot that has been free for longest. Precondition: not full.
+  std::uint32_t acquire() {
+    const std::uint32_t slot = ring_[head_];
+    head_ = head_ + 1 == ring_.size() ? 0 : head_ + 1;
+    --freeCount_;
+    ++generation_[slot];
+    if (tracksAge_) linkYoungest(slot);
+    return slot;
+  }
+  /// Frees a live slot. Precondition: isLive(slot).
+  void release(std::uint32_t slot) {
+    if (tracksAge_) unlink(slot);
+    ++generation_[slot];
+    ring_[tail_] = slot;
+    tail_ = tail_ + 1 == ring_.size() ? 0 : tail_ + 1;
+    ++freeCount_;
+  }
+  /// The live slot that was acquired first. Preconditions: tracksAge, and at least one is live.
+  std::uint32_t oldest() const { return oldest_; }
+
+  /// Adds `count` slots behind the free ones. Strong guarantee: std::bad_alloc leaves the table as it was.
+  void grow(std::size_t count);
+  /// Drops free slots from the end, down to a whole multiple of `granule` that holds all live slots, never below one
+  /// granule. Slots that a later `grow` adds start above every generation that was dropped, so stale handles stay stale.
+  /// Returns the number of slots dropped. Cost: O(capacity).
+  std::size_t purge(std::size_t granule);
+
+  void archive(Archive& archive);
+  std::size_t memoryBytes() const;
+
+ private:
+  void linkYoungest(std::uint32_t slot);
+  void unlink(std::uint32_t slot);
+  void straightenRing();
+
+  AlignedArray<std::uint32_t> generation_;
+  AlignedArray<std::uint32_t> ring_;  ///< free slots from head_ on, freeCount_ of them, wrapping around
+  AlignedArray<std::uint32_t> older_, younger_;
+  std::size_t head_ = 0, tail_ = 0, freeCount_ = 0;
+  std::uint32_t oldest_ = kNone, youngest_ = kNone;
+  std::uint32_t firstGeneration_ = 0;  ///< of slots to come: even, above all that purge dropped
+  bool tracksAge_;
+};
+
+}  // namespace froude
