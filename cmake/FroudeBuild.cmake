@@ -1,0 +1,66 @@
+# Compiler settings, the include root and the helper that makes one library per floor of the house.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+# Assertions belong to FROUDE_ASSERTS, not to the build type, so that the tests run optimised code with assertions on.
+string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+string(REPLACE "-O3" "-O2" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+
+add_library(froude_settings INTERFACE)
+target_compile_features(froude_settings INTERFACE cxx_std_20)
+target_compile_definitions(froude_settings INTERFACE EIGEN_MPL2_ONLY EIGEN_DONT_PARALLELIZE)
+# No silent contraction: the same source gives the same bits wherever it is inlined.
+target_compile_options(froude_settings INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wpedantic -Wnon-virtual-dtor)
+if(FROUDE_WERROR)
+  target_compile_options(froude_settings INTERFACE -Werror)
+endif()
+if(FROUDE_SANITIZE)
+  target_compile_options(froude_settings INTERFACE -fsanitize=${FROUDE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(froude_settings INTERFACE -fsanitize=${FROUDE_SANITIZE})
+endif()
+if(NOT FROUDE_ASSERTS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_definitions(froude_settings INTERFACE NDEBUG)
+endif()
+
+set(FROUDE_INCLUDE_ROOT ${CMAKE_BINARY_DIR}/include)
+
+# <froude/fields/polygon.h> in the tree is the very file in fields/, by one symbolic link a floor.
+function(froude_include_root)
+  file(MAKE_DIRECTORY ${FROUDE_INCLUDE_ROOT}/froude)
+  foreach(pair "base;src/base" "fields;fields" "particles;particles" "solver;solver")
+    list(GET pair 0 name)
+    list(GET pair 1 folder)
+    file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${FROUDE_INCLUDE_ROOT}/froude/${name} SYMBOLIC)
+  endforeach()
+  find_package(Git QUIET)
+  set(FROUDE_COMMIT "unknown")
+  if(GIT_FOUND)
+    execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12 --exclude=*
+      WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(commit)
+      set(FROUDE_COMMIT ${commit})
+    endif()
+  endif()
+  configure_file(${CMAKE_SOURCE_DIR}/cmake/version.h.in ${FROUDE_INCLUDE_ROOT}/froude/version.h)
+endfunction()
+
+# froude_floor(name [dependencies...]): the library froude::name of all sources in the current folder and below.
+function(froude_floor name)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  add_library(froude_${name} ${sources})
+  add_library(froude::${name} ALIAS froude_${name})
+  set_target_properties(froude_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0)
+  target_include_directories(froude_${name} PUBLIC
+    $<BUILD_INTERFACE:${FROUDE_INCLUDE_ROOT}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(froude_${name} PUBLIC Eigen3::Eigen ${ARGN} PRIVATE $<BUILD_INTERFACE:froude_settings>)
+endfunction()
