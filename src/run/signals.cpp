@@ -1,0 +1,39 @@
+#include "run/signals.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+
+namespace froude::run {
+namespace {
+
+volatile sig_atomic_t caughtSignal = 0;
+std::array<struct sigaction, 4> previousActions;
+constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGPIPE, SIGXFSZ};
+
+extern "C" void onSignal(int signal) {
+  if (caughtSignal != 0) _exit(128 + signal);
+  caughtSignal = signal;
+}
+
+}  // namespace
+
+SignalGuard::SignalGuard() {
+  caughtSignal = 0;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    struct sigaction action {};
+    action.sa_handler = kSignals[i] == SIGINT || kSignals[i] == SIGTERM ? onSignal : SIG_IGN;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    sigaction(kSignals[i], &action, &previousActions[i]);
+  }
+}
+
+SignalGuard::~SignalGuard() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &previousActions[i], nullptr);
+}
+
+int SignalGuard::pending() const { return caughtSignal; }
+
+}  // namespace froude::run
