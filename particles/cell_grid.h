@@ -1,7 +1,6 @@
 // Particles sorted into square cells: a stable counting sort, and the runs of candidates around a cell.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -19,9 +18,10 @@ struct GridFrame {
   bool periodicX = false, periodicY = false;
   Vec2 period{0.0, 0.0};  ///< of periodic axes [m]; 0 means nx · cellSize, ny · cellSize
 
-  /// The cells of at least `cellSize` that cover `box`; a periodic axis has the box's extent as its period, divided into a
-  /// whole number of cells. Error if the box is empty or not finite, if cellSize is not a positive number, if a periodic
-  /// axis is shorter than 3 cells (a particle would be its own neighbour's neighbour twice) or above 2³⁰ cells.
+  /// The cells of at least `cellSize` that cover `box`; a periodic axis has the box's extent as its period, divided
+  /// into a whole number of cells. Error if the box is empty or not finite, if cellSize is not a positive number, if a
+  /// periodic axis is shorter than 3 cells (a particle would be its own neighbour's neighbour twice) or above 2³⁰
+  /// cells.
   static GridFrame cover(const Box& box, double cellSize, bool periodicX = false, bool periodicY = false);
 
   Vec2 periodLength() const {
@@ -70,10 +70,14 @@ class CellGrid {
   std::span<const std::uint32_t> cells() const { return cell_.span(); }
 
   /// The cell of a point, by the arithmetic of `build`.
-  std::uint32_t cellOf(double x, double y) const { return cellX(x) + cellY(y) * static_cast<std::uint32_t>(frame_.nx); }
+  std::uint32_t cellOf(double x, double y) const {
+    const std::int32_t cx = clampedCell((x - frame_.origin.x()) * inverse_.x(), last_.x());
+    const std::int32_t cy = clampedCell((y - frame_.origin.y()) * inverse_.y(), last_.y());
+    return static_cast<std::uint32_t>(cy * frame_.nx + cx);
+  }
 
-  /// run(const CellRun&) for the particles in the 3 × 3 cells around `cell`, itself included, in a fixed order: three runs,
-  /// more at periodic seams, fewer at borders; runs may be empty.
+  /// run(const CellRun&) for the particles in the 3 × 3 cells around `cell`, itself included, in a fixed order: three
+  /// runs, more at periodic seams, fewer at borders; runs may be empty.
   template <typename F>
   void forEachRun(std::uint32_t cell, F&& run) const {
     const auto nx = static_cast<std::uint32_t>(frame_.nx);
@@ -93,11 +97,9 @@ class CellGrid {
 
  private:
   // Comparisons in this form send NaN to 0 instead of an undefined conversion.
-  static std::uint32_t clampedCell(double t, double last) {
-    return static_cast<std::uint32_t>(t > 0.0 ? (t < last ? t : last) : 0.0);
+  static std::int32_t clampedCell(double t, double last) {
+    return static_cast<std::int32_t>(t > 0.0 ? (t < last ? t : last) : 0.0);
   }
-  std::uint32_t cellX(double x) const { return clampedCell((x - frame_.origin.x()) * inverse_.x(), last_.x()); }
-  std::uint32_t cellY(double y) const { return clampedCell((y - frame_.origin.y()) * inverse_.y(), last_.y()); }
   static bool wrap(std::int32_t& i, std::int32_t n, bool periodic, double period, double& shift) {
     if (i >= 0 && i < n) return true;
     shift = i < 0 ? -period : period;
@@ -117,6 +119,7 @@ class CellGrid {
   Vec2 inverse_{1.0, 1.0}, last_{0.0, 0.0}, period_{1.0, 1.0};
   AlignedArray<std::uint32_t> cell_, order_, cellStart_;
   AlignedArray<std::uint32_t> histograms_;  ///< one per chunk of particles, then the places they write to
+  AlignedArray<std::uint32_t> blockSums_;
   bool sorted_ = true;
 };
 

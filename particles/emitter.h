@@ -35,11 +35,12 @@ class EmitterError : public Error {
   using Error::Error;
 };
 
-/// Places what flows in during a step. Fluid comes in rows across the nozzle, floor(length/spacing) particles at spacing
-/// dx, centred; a new row each time the jet has advanced by dx, the first at `start`. Bullets come at start + k/rate, at a
-/// random place on the nozzle and a random angle within ±spread, by the counter of the bullet's number. Each has moved on
-/// since its own instant by speed · (rest of the step), so that the jet does not depend on the steps: positions agree to
-/// rounding however time is divided. State: the numbers of events (rows or bullets) and of refusals; nothing else.
+/// Places what flows in during a step. Fluid comes in rows across the nozzle, floor(length/spacing) particles at
+/// spacing dx, centred; a new row each time the jet has advanced by dx, the first at `start`. Bullets come at start +
+/// k/rate, at a random place on the nozzle and a random angle within ±spread, by the counter of the bullet's number.
+/// Each has moved on since its own instant by speed · (rest of the step), so that the jet does not depend on the steps:
+/// positions agree to rounding however time is divided. State: the numbers of events (rows or bullets) and of refusals;
+/// nothing else.
 class Emitter {
  public:
   using Place = FunctionRef<void(const Vec2& position, const Vec2& velocity)>;

@@ -28,14 +28,15 @@ struct FillResult {
 };
 
 /// The lattice (xmin + (i+½)·spacing, ymin + (j+½)·spacing) over the shape's bounding box: all places inside the shape
-/// for which isBlocked is false. A hole is outside. FillError if spacing [m] is not a positive number or the lattice has
-/// more than `limit` places. Cost: O(places + rows · edges).
+/// for which isBlocked is false. A hole is outside, and so is the boundary (to 1e-9 spacings). FillError if spacing [m]
+/// is not a positive number or the lattice has more than `limit` places. Cost: O(places + rows · edges).
 FillResult fillLattice(const Polygon& shape, double spacing, FunctionRef<bool(const Vec2&)> isBlocked,
                        std::size_t limit = std::size_t{1} << 30);
 FillResult fillLattice(const Polygon& shape, double spacing);
 
-/// `count` places uniformly at random in the shape [m], independent of each other, by rejection in its bounding box from
-/// the stream; a place for which isBlocked is true is drawn again. FillError if 10,000 draws in a row find no free place.
+/// `count` places uniformly at random in the shape [m], independent of each other, by rejection in its bounding box
+/// from the stream; a place for which isBlocked is true is drawn again. FillError if 10,000 draws in a row find no free
+/// place.
 std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random,
                              FunctionRef<bool(const Vec2&)> isBlocked);
 std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random);
@@ -43,8 +44,8 @@ std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStre
 /// Points that are already there (other blocks, live particles), for cutting out around them.
 class PlacedPoints {
  public:
-  /// clearance [m] > 0: nearer than this is taken. For blocks whose lattices do not match, 0.9 spacing avoids over-dense
-  /// seams; two lattices that abut at a whole spacing are not cut. FillError if it is not a positive number.
+  /// clearance [m] > 0: nearer than this is taken. For blocks whose lattices do not match, 0.9 spacing avoids
+  /// over-dense seams; two lattices that abut at a whole spacing are not cut. FillError if it is not a positive number.
   explicit PlacedPoints(double clearance);
   void add(const Vec2& point);
   void add(std::span<const Vec2> points);
@@ -54,7 +55,7 @@ class PlacedPoints {
 
  private:
   static constexpr std::uint32_t kEnd = 0xFFFFFFFFu;
-  std::uint64_t key(double cx, double cy) const;
+  static std::uint64_t key(double cx, double cy);
 
   double clearance_;
   std::vector<Vec2> points_;

@@ -9,15 +9,15 @@
 
 namespace froude {
 
-/// For each particle the others closer than a radius, both ways (j in the list of i and i in the list of j), in the order
-/// of the grid's runs: the same on any number of threads. Compressed rows, in one buffer for each block of kBlockSize
-/// particles. Along periodic axes a pair is listed once, through its nearest image: take differences of positions through
-/// GridFrame::minimumImage. Allocates only where a build needs more than all before.
+/// For each particle the others closer than a radius, both ways (j in the list of i and i in the list of j), in the
+/// order of the grid's runs: the same on any number of threads. Compressed rows, in one buffer for each block of
+/// kBlockSize particles. Along periodic axes a pair is listed once, through its nearest image: take differences of
+/// positions through GridFrame::minimumImage. Allocates only where a build needs more than all before.
 class NeighbourList {
  public:
-  /// x, y: positions sorted by `grid` [m] (permuted by its order). Lists pairs with distance < radius + skin: with a skin,
-  /// the lists stay complete for `radius` until two particles have together moved by more than `skin`, see `stillHolds`.
-  /// Precondition: radius + skin ≤ grid.frame().cellSize.
+  /// x, y: positions sorted by `grid` [m] (permuted by its order). Lists pairs with distance < radius + skin: with a
+  /// skin, the lists stay complete for `radius` until two particles have together moved by more than `skin`, see
+  /// `stillHolds`. Precondition: radius + skin ≤ grid.frame().cellSize.
   void build(const CellGrid& grid, std::span<const double> x, std::span<const double> y, double radius,
              double skin = 0.0);
 

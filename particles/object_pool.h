@@ -22,10 +22,11 @@ struct ObjectHandle {
   friend bool operator==(const ObjectHandle&, const ObjectHandle&) = default;
 };
 
-/// The contract of ParticlePool for whole objects. Objects live in slabs and never move; `T` is default constructible and
-/// move assignable. A new object is a fresh `T{}`, or, once `initialize` set a function, whatever the slot held before,
-/// passed to that function: it may reuse memory that the object owns, and must set all it relies on. Iteration is in slot
-/// order, the same in every run. Not for several threads at once; distinct objects may be used from distinct threads.
+/// The contract of ParticlePool for whole objects. Objects live in slabs and never move; `T` is default constructible
+/// and move assignable. A new object is a fresh `T{}`, or, once `initialize` set a function, whatever the slot held
+/// before, passed to that function: it may reuse memory that the object owns, and must set all it relies on. Iteration
+/// is in slot order, the same in every run. Not for several threads at once; distinct objects may be used from distinct
+/// threads.
 template <typename T>
 class ObjectPool {
  public:
@@ -81,8 +82,8 @@ class ObjectPool {
   /// Releases all.
   void clear();
 
-  /// Whole state. Objects with a member `archive(Archive&)` are saved by it; others must be trivially copyable, and free
-  /// of padding if they are to be hashed.
+  /// Whole state. Objects with a member `archive(Archive&)` are saved by it; others must be trivially copyable, and
+  /// free of padding if they are to be hashed.
   void archive(Archive& archive);
   std::size_t memoryBytes() const;
 
@@ -91,7 +92,7 @@ class ObjectPool {
   const T& at(std::uint32_t slot) const { return slabs_[slot >> shift_][slot & mask_]; }
   bool makeRoom();
   Handle acquire();
-  void addSlabs();
+  void addSlabs(std::size_t capacity);
 
   PoolSettings settings_;
   PoolCounters counters_;

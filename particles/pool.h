@@ -1,4 +1,5 @@
-// The particle pool: structure of arrays with handles that go stale. It owns every per-particle column, the solvers' too.
+// The particle pool: structure of arrays with handles that go stale. It owns every per-particle column, the solvers'
+// too.
 #pragma once
 
 #include <functional>
@@ -43,8 +44,8 @@ struct ColumnInfo {
 
 /// Live particles are dense at indices [0, size()) of all columns, which are 64-byte aligned and padded (see
 /// AlignedArray). An index is good until the next release, compact or permute, a span until the next create, permute,
-/// reserve, purge or load; handles and column ids last. Creating and removing are not for several threads at once, except
-/// `kill`. A pool whose capacity suffices allocates nothing, whatever is created, removed and permuted.
+/// reserve, purge or load; handles and column ids last. Creating and removing are not for several threads at once,
+/// except `kill`. A pool whose capacity suffices allocates nothing, whatever is created, removed and permuted.
 class ParticlePool {
  public:
   using Initializer = std::function<void(ParticlePool&, std::uint32_t index)>;
@@ -98,7 +99,8 @@ class ParticlePool {
   const PoolSettings& settings() const { return settings_; }
   const PoolCounters& counters() const { return counters_; }
 
-  /// A new particle at index size() − 1, State columns zero, then passed to the initializer. Full: PoolError under Fixed.
+  /// A new particle at index size() − 1, State columns zero, then passed to the initializer. Full: PoolError under
+  /// Fixed.
   ParticleHandle create();
   /// As `create`, but null where it would throw (also when memory is short): for use inside steps.
   ParticleHandle tryCreate();
@@ -113,7 +115,8 @@ class ParticlePool {
   /// marking once. May be called from several threads for different particles.
   void kill(std::uint32_t index) { markedColumn()[index] = 1; }
   bool isMarked(std::uint32_t index) const { return column(kMarked)[index] != 0; }
-  /// Removes all that is marked and keeps the order of the rest. Returns how many went. Cost: O(size) bytes read if none.
+  /// Removes all that is marked and keeps the order of the rest. Returns how many went. Cost: O(size) bytes read if
+  /// none.
   std::size_t compact();
 
   bool isAlive(ParticleHandle handle) const { return table_.isLive(handle.slot, handle.generation); }

@@ -21,8 +21,8 @@ class SinkSet {
 
   /// The first sink that contains the point, or −1. Boxes are looked at first.
   std::int32_t sinkAt(const Vec2& point) const;
-  /// Marks (ParticlePool::kill) all particles inside a sink that are not marked yet and counts them. Parallel, same result
-  /// on any number of threads. Returns how many were marked.
+  /// Marks (ParticlePool::kill) all particles inside a sink that are not marked yet and counts them. Parallel, same
+  /// result on any number of threads. Returns how many were marked.
   std::size_t mark(ParticlePool& pool);
   /// Particles that each sink has swallowed so far.
   std::span<const std::uint64_t> counts() const { return counts_; }

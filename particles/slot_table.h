@@ -1,4 +1,5 @@
-// Slots with generations: what makes a handle go stale. Shared by the particle pool and the object pools; holds no payload.
+// Slots with generations: what makes a handle go stale. Shared by the particle pool and the object pools; holds no
+// payload.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,8 @@
 
 namespace froude {
 
-/// What a full pool does: `Fixed` refuses, `Grow` adds its initial size, `RecycleOldest` releases the oldest live entry.
+/// What a full pool does: `Fixed` refuses, `Grow` adds its initial size, `RecycleOldest` releases the oldest live
+/// entry.
 enum class GrowthPolicy { Fixed, Grow, RecycleOldest };
 
 /// Definition of a pool.
@@ -34,6 +36,13 @@ struct PoolCounters {
   std::uint64_t recycled = 0;  ///< released by RecycleOldest to make room
   std::uint64_t refused = 0;   ///< creations that a full pool turned down
 };
+
+inline constexpr std::size_t kMaxPoolCapacity = std::size_t{1} << 31;
+
+/// The words that both kinds of pool share. `checkedSettings` returns what it is given, or throws PoolError.
+PoolSettings checkedSettings(PoolSettings settings);
+std::string poolFullMessage(const PoolSettings& settings, std::size_t capacity);
+std::string badHandleMessage(const PoolSettings& settings, std::uint32_t slot, std::uint32_t generation);
 
 /// Hands out slot numbers. A slot's generation is odd while it is live and even while it is free, and rises with every
 /// change, so that {slot, generation} names one life of a slot; generation 0 was never handed out. Free slots form a
@@ -79,8 +88,8 @@ class SlotTable {
   /// Adds `count` slots behind the free ones. Strong guarantee: std::bad_alloc leaves the table as it was.
   void grow(std::size_t count);
   /// Drops free slots from the end, down to a whole multiple of `granule` that holds all live slots, never below one
-  /// granule. Slots that a later `grow` adds start above every generation that was dropped, so stale handles stay stale.
-  /// Returns the number of slots dropped. Cost: O(capacity).
+  /// granule. Slots that a later `grow` adds start above every generation that was dropped, so stale handles stay
+  /// stale. Returns the number of slots dropped. Cost: O(capacity).
   std::size_t purge(std::size_t granule);
 
   void archive(Archive& archive);
