@@ -25,7 +25,9 @@ if(FROUDE_WERROR)
   target_compile_options(froude_settings INTERFACE -Werror)
 endif()
 if(FROUDE_SANITIZE)
-  target_compile_options(froude_settings INTERFACE -fsanitize=${FROUDE_SANITIZE} -fno-omit-frame-pointer)
+  # Whatever a sanitizer finds ends the program: a report that scrolls by is not a failed test.
+  target_compile_options(froude_settings INTERFACE -fsanitize=${FROUDE_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
   target_link_options(froude_settings INTERFACE -fsanitize=${FROUDE_SANITIZE})
 endif()
 if(NOT FROUDE_ASSERTS AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
@@ -45,7 +47,7 @@ function(froude_include_root)
   find_package(Git QUIET)
   set(FROUDE_COMMIT "unknown")
   if(GIT_FOUND)
-    execute_process(COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=12 --exclude=*
+    execute_process(COMMAND ${GIT_EXECUTABLE} -c safe.directory=* describe --always --dirty --abbrev=12 --exclude=*
       WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
     if(commit)
       set(FROUDE_COMMIT ${commit})
@@ -63,4 +65,18 @@ function(froude_floor name)
   target_include_directories(froude_${name} PUBLIC
     $<BUILD_INTERFACE:${FROUDE_INCLUDE_ROOT}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(froude_${name} PUBLIC Eigen3::Eigen ${ARGN} PRIVATE $<BUILD_INTERFACE:froude_settings>)
+endfunction()
+
+# Gives every test of a build with sanitizers their settings, however ctest is called: a file that ctest reads first.
+function(froude_sanitizer_environment)
+  if(NOT FROUDE_SANITIZE)
+    return()
+  endif()
+  set(settings ${CMAKE_BINARY_DIR}/sanitizer_environment.cmake)
+  file(CONFIGURE OUTPUT ${settings} @ONLY CONTENT [[
+set(ENV{TSAN_OPTIONS} "suppressions=@CMAKE_SOURCE_DIR@/cmake/tsan.supp:halt_on_error=1:second_deadlock_stack=1:$ENV{TSAN_OPTIONS}")
+set(ENV{ASAN_OPTIONS} "detect_stack_use_after_return=1:strict_string_checks=1:$ENV{ASAN_OPTIONS}")
+set(ENV{UBSAN_OPTIONS} "print_stacktrace=1:$ENV{UBSAN_OPTIONS}")
+]])
+  set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY TEST_INCLUDE_FILES ${settings})
 endfunction()

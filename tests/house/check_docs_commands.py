@@ -1,0 +1,171 @@
+"""Every command in a ```sh block of the documents works. Froude's own are run, in a copy of the scenes and shortened; those
+that build, test or install are checked against the presets, the sub-commands and the tests that there are.
+
+A comment `# exit N` behind a command of Froude says which exit code is right; without one it is 0.
+
+Usage: check_docs_commands.py ROOT BUILD_FOLDER"""
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from tree import read, report, tracked_files
+
+SHORT = "0.02"  # simulated seconds: enough to see that a command works
+LIMIT = 300  # seconds, after which a command counts as hanging
+ENVIRONMENT = re.compile(r"^[A-Z_]+=\S*$")
+
+
+def shell_lines(text):
+    """Pairs of line number and command of all ```sh blocks; a backslash joins lines."""
+    inside, pending, start = False, "", 0
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.strip().startswith("```"):
+            inside = line.strip() == "```sh"
+            continue
+        if not inside or not line.strip() or line.strip().startswith("#"):
+            continue
+        start = start if pending else number
+        if line.rstrip().endswith("\\"):
+            pending += line.rstrip()[:-1] + " "
+            continue
+        yield start, (pending + line).strip()
+        pending = ""
+
+
+class Judge:
+    """Runs or checks commands of one document after each other, in one temporary folder."""
+
+    def __init__(self, root, build):
+        self.root, self.build = root, build
+        self.presets = {preset["name"] for preset in json.loads(read(root, "CMakePresets.json"))["configurePresets"]
+                        if not preset.get("hidden")}
+        self.froude = os.path.join(build, "bin", "froude")
+
+    def in_folder(self, folder):
+        """Makes a folder look like the root of a tree with every preset built."""
+        self.folder = folder
+        for name in ("scenes", "docs", "bench"):
+            if os.path.isdir(os.path.join(self.root, name)):
+                shutil.copytree(os.path.join(self.root, name), os.path.join(folder, name))
+        for preset in self.presets:
+            os.makedirs(os.path.join(folder, "build", preset, "bin"))
+            os.symlink(self.froude, os.path.join(folder, "build", preset, "bin", "froude"))
+
+    def complaint(self, line):
+        """None where the command works, else what is wrong with it."""
+        expected = re.search(r"#\s*exit (\d+)", line)
+        try:
+            words = shlex.split(line, comments=True)
+        except ValueError as error:
+            return f"not a command: {error}"
+        for part in self.split(words):
+            wrong = self.judge(part, int(expected.group(1)) if expected else 0)
+            if wrong:
+                return wrong
+        return None
+
+    @staticmethod
+    def split(words):
+        """The commands of a line joined by && or ;."""
+        part = []
+        for word in words:
+            if word in ("&&", ";"):
+                yield part
+                part = []
+            else:
+                part.append(word)
+        if part:
+            yield part
+
+    def judge(self, words, expected):
+        while words and (ENVIRONMENT.match(words[0]) or words[0] in ("sudo", "env")):
+            words = words[1:]
+        if not words:
+            return "nothing to run"
+        program = os.path.basename(words[0])
+        known = {"bootstrap": self.bootstrap, "run": self.ci, "cmake": self.cmake, "ctest": self.ctest,
+                 "git": lambda w: None, "cd": lambda w: None, "apt-get": self.apt, "clang-format": lambda w: None}
+        if program == "froude":
+            return self.run_froude(words, expected)
+        if program in known:
+            return known[program](words)
+        return f"the check does not know how to judge '{words[0]}'"
+
+    def run_froude(self, words, expected):
+        if not os.path.exists(self.froude):
+            return f"there is no {self.froude}"
+        words = [self.froude] + words[1:]
+        if len(words) > 1 and words[1] in ("run", "resume") and "--until" not in words and "--help" not in words:
+            words += ["--until", SHORT]
+        try:
+            outcome = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=LIMIT, check=False)
+        except subprocess.TimeoutExpired:
+            return f"still running after {LIMIT} s"
+        if outcome.returncode != expected:
+            return f"exit {outcome.returncode}, {expected} is right: {outcome.stderr.strip()[-400:]}"
+        return None
+
+    def bootstrap(self, words):
+        text = subprocess.run([os.path.join(self.root, "bootstrap"), "help"], capture_output=True, text=True,
+                              check=True).stdout
+        commands = re.findall(r"^  ([a-z]+) ", text, re.M)
+        if len(words) < 2 or words[1] not in commands:
+            return f"bootstrap knows {', '.join(commands)}"
+        scenes = [word for word in words[2:] if word.endswith(".toml")]
+        return self.missing(scenes)
+
+    def missing(self, paths):
+        gone = [path for path in paths if not os.path.exists(os.path.join(self.root, path))]
+        return f"there is no {gone[0]}" if gone else None
+
+    def ci(self, words):
+        return self.missing([words[0]])
+
+    def cmake(self, words):
+        named = [words[i + 1] for i, word in enumerate(words[:-1]) if word == "--preset"]
+        wrong = [name for name in named if name not in self.presets]
+        if wrong:
+            return f"there is no preset {wrong[0]}"
+        return None if named or "--install" in words else "a cmake command without a preset"
+
+    def ctest(self, words):
+        folders = [words[i + 1] for i, word in enumerate(words[:-1]) if word == "--test-dir"]
+        if not folders or os.path.basename(folders[0]) not in self.presets:
+            return "--test-dir is to name build/PRESET"
+        filters = []
+        for i, word in enumerate(words[:-1]):
+            if word in ("-L", "-R", "-LE", "-E"):
+                filters += [word, words[i + 1]]
+        listing = subprocess.run(["ctest", "--test-dir", self.build, "-N", *filters], capture_output=True, text=True,
+                                 check=False).stdout
+        return None if re.search(r"Total Tests: [1-9]", listing) else f"no test answers to {' '.join(filters)}"
+
+    def apt(self, words):
+        listed = read(self.root, "cmake/packages.txt") + read(self.root, "THIRD_PARTY.md")
+        unknown = [word for word in words[2:] if not word.startswith("-") and word not in listed]
+        return f"{unknown[0]} is not in cmake/packages.txt" if unknown else None
+
+
+def main(root, build):
+    judge = Judge(root, build)
+    complaints, looked_at = [], 0
+    for path in tracked_files(root):
+        if not path.endswith(".md"):
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            judge.in_folder(folder)
+            for number, line in shell_lines(read(root, path)):
+                looked_at += 1
+                wrong = judge.complaint(line)
+                if wrong:
+                    complaints.append(f"{path}:{number}: {line}\n    {wrong}")
+    report("commands in the documents", complaints, looked_at)
+
+
+if __name__ == "__main__":
+    main(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
