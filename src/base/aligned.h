@@ -14,8 +14,8 @@ namespace froude {
 /// Bytes that may be read (never relied upon) before the first and behind the last element.
 inline constexpr std::size_t kSimdPadding = 64;
 
-/// Owner of `size()` trivially copyable elements. Growing keeps the contents; shrinking never frees. Elements that growing
-/// adds are zero.
+/// Owner of `size()` trivially copyable elements. Growing keeps the contents; shrinking never frees. Elements that
+/// growing adds are zero.
 template <typename T>
 class AlignedArray {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -54,7 +54,7 @@ class AlignedArray {
   void reserve(std::size_t capacity) {
     if (capacity <= capacity_) return;
     const std::size_t bytes = capacity * sizeof(T) + 2 * kSimdPadding;
-    auto* raw = static_cast<std::byte*>(::operator new(bytes, std::align_val_t{64}));
+    auto* raw = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{64}));
     std::memset(raw, 0, bytes);
     T* fresh = reinterpret_cast<T*>(raw + kSimdPadding);
     if (size_ > 0) std::memcpy(static_cast<void*>(fresh), data_, size_ * sizeof(T));
@@ -99,7 +99,7 @@ class AlignedArray {
 
  private:
   void release() {
-    if (data_ != nullptr) ::operator delete(reinterpret_cast<std::byte*>(data_) - kSimdPadding, std::align_val_t{64});
+    if (data_ != nullptr) ::operator delete (reinterpret_cast<std::byte*>(data_) - kSimdPadding, std::align_val_t{64});
     data_ = nullptr;
   }
 

@@ -13,9 +13,9 @@
 
 namespace froude {
 
-/// Visits named values, in a fixed order. A class with state has `void archive(Archive&)` that passes every value on which
-/// its future depends; names are unique within one archive (`section` prefixes them). Loading into an object that was
-/// built from other definitions is an Error that names the value.
+/// Visits named values, in a fixed order. A class with state has `void archive(Archive&)` that passes every value on
+/// which its future depends; names are unique within one archive (`section` prefixes them). Loading into an object that
+/// was built from other definitions is an Error that names the value.
 class Archive {
  public:
   virtual ~Archive() = default;

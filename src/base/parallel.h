@@ -15,8 +15,8 @@ template <typename R, typename... Args>
 class FunctionRef<R(Args...)> {
  public:
   template <typename F>
-    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
-  FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): call sites pass lambdas
+  requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
+      FunctionRef(F&& f)  // NOLINT(google-explicit-constructor): call sites pass lambdas
       : object_(const_cast<void*>(static_cast<const void*>(&f))), call_([](void* object, Args... args) -> R {
           return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
         }) {}
@@ -36,8 +36,8 @@ constexpr std::size_t blockCount(std::size_t count, std::size_t blockSize = kBlo
 }
 
 /// Calls body(begin, end) once for each block of [0, count). Blocks depend on blockSize only, never on the number of
-/// threads; their order is not defined. Runs in the caller's arena; with one thread, or one block, in the calling thread.
-/// Every worker computes with denormals flushed and rounding to nearest. No allocation of ours.
+/// threads; their order is not defined. Runs in the caller's arena; with one thread, or one block, in the calling
+/// thread. Every worker computes with denormals flushed and rounding to nearest. No allocation of ours.
 void parallelFor(std::size_t count, std::size_t blockSize, FunctionRef<void(std::size_t, std::size_t)> body);
 
 inline void parallelFor(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
