@@ -7,8 +7,8 @@
 
 namespace froude::run {
 
-/// Appends lines to gauges.csv. Every `append` is on its way to the disk when it returns; what could not be written whole
-/// is taken back. Throws exporting::OutputError.
+/// Appends lines to gauges.csv. Every `append` is on its way to the disk when it returns; what could not be written
+/// whole is taken back. Throws exporting::OutputError.
 class GaugeLog {
  public:
   /// A new file with its header line.

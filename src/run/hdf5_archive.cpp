@@ -13,10 +13,10 @@
 namespace froude::run {
 namespace {
 
-constexpr std::size_t kUserBlock = 512;       // smallest that HDF5 knows [bytes]
-constexpr std::size_t kPackedUpTo = 64;       // larger blocks are datasets [bytes]
+constexpr std::size_t kUserBlock = 512;        // smallest that HDF5 knows [bytes]
+constexpr std::size_t kPackedUpTo = 64;        // larger blocks are datasets [bytes]
 constexpr std::size_t kHashedBlock = 1 << 20;  // [bytes]
-constexpr std::size_t kGrowth = 16 << 20;     // of the file in memory [bytes]
+constexpr std::size_t kGrowth = 16 << 20;      // of the file in memory [bytes]
 constexpr std::string_view kMagic = "froude checkpoint\nchecksum ";
 
 // Owner of an HDF5 handle.
@@ -78,7 +78,8 @@ void checkBody(const std::string& path) {
   if (!in) throw InputError(path + ": cannot be read: " + std::strerror(errno));
   std::string head(kUserBlock, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (!in || !head.starts_with(kMagic)) throw InputError(path + ": this is not a checkpoint of Froude, or its beginning is damaged");
+  if (!in || !head.starts_with(kMagic))
+    throw InputError(path + ": this is not a checkpoint of Froude, or its beginning is damaged");
   StateHash hash;
   std::vector<char> block(kHashedBlock);
   while (in) {
@@ -86,7 +87,8 @@ void checkBody(const std::string& path) {
     if (in.gcount() > 0) hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
   }
   if (!head.starts_with(hashLine(hash))) {
-    throw InputError(path + ": damaged: its checksum is not that of its contents; restore it from a copy, or start the run again");
+    throw InputError(
+        path + ": damaged: its checksum is not that of its contents; restore it from a copy, or start the run again");
   }
 }
 
@@ -114,7 +116,6 @@ std::string hdf5Version() {
 
 struct Hdf5Writer::Impl {
   Handle access{H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
-  Handle creation{H5Pcreate(H5P_FILE_CREATE), H5Pclose};
   Handle links{H5Pcreate(H5P_LINK_CREATE), H5Pclose};
   Handle file{-1, H5Fclose};
   Path path;
@@ -141,11 +142,10 @@ struct Hdf5Writer::Impl {
 Hdf5Writer::Hdf5Writer() : impl_(std::make_unique<Impl>()) {
   silenceHdf5();
   H5Pset_fapl_core(impl_->access, kGrowth, false);
-  // The latest format has checksums on its own tables.
-  H5Pset_libver_bounds(impl_->access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  H5Pset_userblock(impl_->creation, kUserBlock);
+  // The default, oldest format: newer ones checksum their first block together with a flag for "open", and the image of
+  // an open file has the flag cleared but not the checksum (HDF5 1.10.8). Our own checksum covers the whole file.
   H5Pset_create_intermediate_group(impl_->links, 1);
-  impl_->file.reset(H5Fcreate("checkpoint", H5F_ACC_TRUNC, impl_->creation, impl_->access));
+  impl_->file.reset(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, impl_->access));
   if (!impl_->file.ok()) throw Error("checkpoint: HDF5 cannot make a file in memory");
 }
 
@@ -189,8 +189,9 @@ std::string Hdf5Writer::finish() {
   text("values", impl_->values);
   H5Fflush(impl_->file, H5F_SCOPE_LOCAL);
   const ssize_t size = H5Fget_file_image(impl_->file, nullptr, 0);
-  std::string image(size > 0 ? static_cast<std::size_t>(size) : 0, '\0');
-  if (size <= 0 || H5Fget_file_image(impl_->file, image.data(), image.size()) != size) {
+  std::string image(kUserBlock, '\0');  // HDF5 hands out what follows it
+  image.resize(kUserBlock + static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  if (size <= 0 || H5Fget_file_image(impl_->file, image.data() + kUserBlock, static_cast<std::size_t>(size)) != size) {
     throw Error("checkpoint: HDF5 cannot hand out its file");
   }
   impl_->file.reset(-1);

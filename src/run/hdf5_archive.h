@@ -14,8 +14,8 @@ namespace froude::run {
 
 /// Saves into an HDF5 file in memory, which `finish` turns into bytes. In memory, because HDF5 cannot be relied upon to
 /// leave a file that it failed to write to; the bytes then go to disk by writeWholeFile. Blocks of at most 64 bytes are
-/// packed into the tables /value_names, /value_sizes and /values: a dataset takes 500 bytes and 20 µs whatever it holds.
-/// The file starts with a user block of 512 bytes: a line of text and a checksum of all that follows it.
+/// packed into the tables /value_names, /value_sizes and /values: a dataset takes 500 bytes and 20 µs whatever it
+/// holds. The file starts with a user block of 512 bytes: a line of text and a checksum of all that follows it.
 class Hdf5Writer final : public Archive {
  public:
   Hdf5Writer();

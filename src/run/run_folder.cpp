@@ -129,11 +129,13 @@ void RunFolder::lock() {
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
       ::close(std::exchange(lock_, -1));
-      if (reason == EWOULDBLOCK) throw UsageError(path_ + ": another run is writing here; wait for it, or name another folder with -o");
+      if (reason == EWOULDBLOCK)
+        throw UsageError(path_ + ": another run is writing here; wait for it, or name another folder with -o");
       errno = reason;
       throwOutputError(name);
     }
-    struct stat held {}, present {};
+    struct stat held {
+    }, present{};
     if (fstat(lock_, &held) == 0 && stat(name.c_str(), &present) == 0 && held.st_ino == present.st_ino) return;
     ::close(std::exchange(lock_, -1));
   }
@@ -145,12 +147,14 @@ RunFolder RunFolder::create(const std::string& wanted, const std::string& sceneN
   if (makeFolder(path)) return {path, true};
 
   std::error_code error;
-  if (!fs::is_directory(path, error)) throw UsageError("-o " + path + ": this is a file; name a folder that is absent or empty");
+  if (!fs::is_directory(path, error))
+    throw UsageError("-o " + path + ": this is a file; name a folder that is absent or empty");
   if (access(path.c_str(), R_OK | X_OK) != 0) throwOutputError(path);
   RunFolder folder(path, false);
   if (isEmptyButForLock(path)) return folder;
   if (!holdsRun(path)) {
-    throw UsageError("-o " + path + ": the folder holds files that are not a run's; name a folder that is absent or empty");
+    throw UsageError("-o " + path +
+                     ": the folder holds files that are not a run's; name a folder that is absent or empty");
   }
   if (!force) {
     throw UsageError("-o " + path + ": the folder holds a run; `froude resume " + path +
@@ -164,7 +168,8 @@ RunFolder RunFolder::open(const std::string& folder) {
   const std::string path = withoutSlash(folder);
   std::error_code error;
   if (!fs::is_directory(path, error)) throw UsageError(path + ": there is no such folder; name the folder of a run");
-  if (!holdsRun(path)) throw UsageError(path + ": this is not the folder of a run (it has no scene.toml and summary.json)");
+  if (!holdsRun(path))
+    throw UsageError(path + ": this is not the folder of a run (it has no scene.toml and summary.json)");
   return {path, false};
 }
 

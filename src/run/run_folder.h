@@ -10,9 +10,9 @@ namespace froude::run {
 class RunFolder {
  public:
   /// The folder for a new run. `wanted` empty: out/SCENE, or out/SCENE-2, … whichever is the first that is not there.
-  /// A named folder must be absent or empty. With `force` the files of an earlier run in it are removed first; files that
-  /// are not a run's own are never touched, and a folder that holds files but no run is refused.
-  /// Throws UsageError for a folder that may not be used, exporting::OutputError for one that cannot be.
+  /// A named folder must be absent or empty. With `force` the files of an earlier run in it are removed first; files
+  /// that are not a run's own are never touched, and a folder that holds files but no run is refused. Throws UsageError
+  /// for a folder that may not be used, exporting::OutputError for one that cannot be.
   static RunFolder create(const std::string& wanted, const std::string& sceneName, bool force);
 
   /// The folder of an earlier run. Throws UsageError when it is not one, or when another process is at work in it.

@@ -3,8 +3,8 @@
 
 namespace froude::run {
 
-/// Catches both signals while it lives; also lets writes to a closed pipe or over a file-size limit fail instead of kill.
-/// One object at a time.
+/// Catches both signals while it lives; also lets writes to a closed pipe or over a file-size limit fail instead of
+/// kill. One object at a time.
 class SignalGuard {
  public:
   SignalGuard();

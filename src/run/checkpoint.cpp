@@ -1,0 +1,92 @@
+#include "run/checkpoint.h"
+
+#include <froude/base/simd.h>
+#include <froude/version.h>
+
+#include <nlohmann/json.hpp>
+
+#include "run/atomic_file.h"
+#include "run/exit_codes.h"
+
+namespace froude::run {
+namespace {
+
+constexpr const char* kFormat = "1";
+
+using Json = nlohmann::json;
+
+Json toJson(const RunRecord& r) {
+  return {{"command", r.command},         {"sceneFile", r.sceneFile}, {"sceneName", r.sceneName},
+          {"sceneSha256", r.sceneSha256}, {"warnings", r.warnings},   {"wallSeconds", r.wallSeconds},
+          {"fluidArea0", r.fluidArea0},   {"nextFrame", r.nextFrame}, {"gaugeBytes", r.gaugeBytes}};
+}
+
+RunRecord recordOf(const Json& json) {
+  RunRecord r;
+  json.at("command").get_to(r.command);
+  json.at("sceneFile").get_to(r.sceneFile);
+  json.at("sceneName").get_to(r.sceneName);
+  json.at("sceneSha256").get_to(r.sceneSha256);
+  json.at("warnings").get_to(r.warnings);
+  json.at("wallSeconds").get_to(r.wallSeconds);
+  json.at("fluidArea0").get_to(r.fluidArea0);
+  json.at("nextFrame").get_to(r.nextFrame);
+  json.at("gaugeBytes").get_to(r.gaugeBytes);
+  return r;
+}
+
+// Both directions in one place, so that they cannot differ.
+void archiveState(Archive& a, World& world, GaugeSet& gauges) {
+  a.beginSection("world");
+  world.archive(a);
+  a.endSection();
+  a.beginSection("gauges");
+  gauges.archive(a);
+  a.endSection();
+}
+
+}  // namespace
+
+std::string buildVersion() { return FROUDE_VERSION " (" FROUDE_COMMIT ")"; }
+
+void saveCheckpoint(const std::string& file, World& world, GaugeSet& gauges, const RunRecord& record) {
+  Hdf5Writer writer;
+  writer.attribute("format_version", kFormat);
+  writer.attribute("froude_version", buildVersion());
+  writer.attribute("simd", std::string(name(world.definition().simd)));
+  writer.attribute("state_hash", world.stateHash());
+  Json run;
+  run["time"] = world.time();
+  run["record"] = toJson(record);
+  writer.text("run", run.dump(-1, ' ', false, Json::error_handler_t::replace));
+  archiveState(writer, world, gauges);
+  writeWholeFile(file, writer.finish());
+}
+
+Checkpoint::Checkpoint(const std::string& file) : file_(file), reader_(file) {
+  const std::string format = reader_.attribute("format_version");
+  version_ = reader_.attribute("froude_version");
+  if (format != kFormat) {
+    throw UsageError(file + ": checkpoint of format " + format + " from Froude " + version_ +
+                     "; this build reads format " + kFormat + ": resume it with the build that wrote it");
+  }
+  simd_ = reader_.attribute("simd");
+  stateHash_ = reader_.attribute("state_hash");
+  try {
+    const Json run = Json::parse(reader_.text("run"));
+    time_ = run.at("time").get<double>();
+    record_ = recordOf(run.at("record"));
+  } catch (const Json::exception& e) {
+    throw InputError(file + ": its record of the run cannot be read: " + e.what());
+  }
+}
+
+void Checkpoint::load(World& world, GaugeSet& gauges) {
+  archiveState(reader_, world, gauges);
+  if (world.stateHash() != stateHash_) {
+    throw InputError(file_ + ": the state that was loaded (" + world.stateHash() + ") is not the one that was saved (" +
+                     stateHash_ + "); another build may have written it: " + version_);
+  }
+}
+
+}  // namespace froude::run

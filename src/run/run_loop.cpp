@@ -1,0 +1,129 @@
+#include "run/run_loop.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "run/atomic_file.h"
+
+namespace froude::run {
+namespace {
+
+constexpr std::uint64_t kVerboseEvery = 100;  // [sub-steps]
+
+}  // namespace
+
+RunLoop::RunLoop(const RunFolder& folder, const scene::Scene& scene, World& world, GaugeSet& gauges, RunRecord record,
+                 Start start)
+    : folder_(folder), scene_(scene), world_(world), gauges_(gauges), record_(std::move(record)) {
+  tracedLeaks_ = world.ledger().leaks;
+  if (start == Start::New) writeWholeFile(folder.file("scene.toml"), scene.resolved);
+  writeSummary(Status::Running);
+  if (!gauges.columns().empty()) {
+    const std::string file = folder.file("gauges.csv");
+    if (start == Start::New) {
+      gaugeLog_.emplace(file, gauges.header());
+    } else {
+      gaugeLog_.emplace(file, record_.gaugeBytes);
+    }
+  }
+  frames_.emplace(folder.path(), scene, world, record_.nextFrame);
+  lastMoment_ = lastCheckpoint_ = Clock::now();
+  if (start == Start::New) takeOutput();
+}
+
+LoopResult RunLoop::run(double end, const SessionOptions& options, const SignalGuard& signals) {
+  Progress progress(world_.time(), end, options.quiet);
+  const std::chrono::duration<double> interval(scene_.output.checkpoint);
+  while (world_.time() < end) {
+    if (signals.pending() != 0) return finish({Status::Interrupted, signals.pending(), {}, {}});
+    const double before = world_.time();
+    const StepReport report = world_.substep();
+    if (!report.ok()) return finish({Status::Unstable, 0, report, {}});
+    if (!(world_.time() > before)) throw Error(fmt::format("the step at t = {} s did not move time on", before));
+    trace(report, options, progress);
+    takeOutput();
+    progress.update(world_.time(), liveParticles());
+    if (Clock::now() - lastCheckpoint_ >= interval) {
+      checkpoint();
+      writeSummary(Status::Running);
+    }
+  }
+  return finish({Status::Done, 0, {}, {}});
+}
+
+void RunLoop::takeOutput() {
+  rows_.clear();
+  gauges_.afterStep(world_, rows_);
+  if (gaugeLog_) gaugeLog_->append(rows_);
+  // A step that is longer than the interval is the frame of several times: numbers stay multiples of the interval.
+  while (record_.nextFrame * scene_.output.every <= world_.time()) {
+    frames_->write(world_, record_.nextFrame);
+    ++record_.nextFrame;
+  }
+}
+
+void RunLoop::checkpoint() {
+  frames_->closeSegment();
+  if (gaugeLog_) {
+    gaugeLog_->sync();
+    record_.gaugeBytes = gaugeLog_->bytes();
+  }
+  countWallTime();
+  saveCheckpoint(folder_.file("checkpoint.h5"), world_, gauges_, record_);
+  lastCheckpoint_ = Clock::now();
+}
+
+LoopResult RunLoop::finish(LoopResult result) {
+  checkpoint();
+  if (result.status == Status::Done) {
+    // Behind the checkpoint: a run that is resumed with a later end must not keep the row of this one.
+    rows_.clear();
+    gauges_.atEnd(world_, rows_);
+    if (gaugeLog_) gaugeLog_->append(rows_);
+    result.film = frames_->makeFilm();
+  }
+  countWallTime();
+  writeSummary(result.status);
+  return result;
+}
+
+void RunLoop::trace(const StepReport& report, const SessionOptions& options, Progress& progress) {
+  const Ledger& ledger = world_.ledger();
+  if (options.verbose && (ledger.substeps % kVerboseEvery == 0 || report.rejected > 0)) {
+    progress.say(fmt::format("sub-step {}: t = {:.6g} s, dt = {:.3g} s by {}, {} particles{}", ledger.substeps,
+                             world_.time(), report.dt, name(report.limit), liveParticles(),
+                             report.rejected > 0 ? fmt::format(", undone {} times", report.rejected) : ""));
+  }
+  if (options.traceLeaks && ledger.leaks > tracedLeaks_) {
+    progress.say(fmt::format("sub-step {}: t = {:.6g} s, {} leaks ({} so far)", ledger.substeps, world_.time(),
+                             ledger.leaks - tracedLeaks_, ledger.leaks));
+    tracedLeaks_ = ledger.leaks;
+  }
+}
+
+void RunLoop::markFailed() noexcept {
+  try {
+    countWallTime();
+    writeSummary(Status::Failed);
+  } catch (...) {  // the disk that failed the run may fail this as well; the first error is the one to tell
+  }
+}
+
+void RunLoop::writeSummary(Status status) {
+  const SummarySource source{scene_, world_, gauges_, record_, concurrency()};
+  writeWholeFile(folder_.file("summary.json"), summaryText(source, status));
+}
+
+void RunLoop::countWallTime() {
+  const Clock::time_point now = Clock::now();
+  record_.wallSeconds += std::chrono::duration<double>(now - lastMoment_).count();
+  lastMoment_ = now;
+}
+
+std::size_t RunLoop::liveParticles() const {
+  return (world_.fluid() != nullptr ? world_.fluid()->size() : 0) +
+         (world_.bullets() != nullptr ? world_.bullets()->size() : 0);
+}
+
+}  // namespace froude::run
