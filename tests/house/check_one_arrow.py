@@ -25,7 +25,8 @@ ONE_DOOR = {
 }
 # Who may include which library at all; the standard library and Eigen are everybody's.
 LIBRARIES = {
-    "tbb": (r"(oneapi/)?tbb/", ["src/base/"]),
+    # Loops are src/base's affair; how many threads there are is the program's.
+    "tbb": (r"(oneapi/)?tbb/", ["src/base/", "src/run/"]),
     "Highway": (r"hwy/", ["src/base/", "fields/", "particles/", "solver/"]),
     "program": (r"fmt/|nlohmann/|hdf5|H5|cairo|muParser|CLI/|toml\+\+/|svgpp/|libxml/|polyclipping/|clipper|png",
                 ["src/"]),
