@@ -63,7 +63,7 @@ class Row {
   bool allExact_ = false;
 };
 
-bool neverBlocked(const Vec2&) { return false; }
+constexpr auto kNeverBlocked = [](const Vec2&) { return false; };
 
 }  // namespace
 
@@ -99,7 +99,7 @@ FillResult fillLattice(const Polygon& shape, double spacing, FunctionRef<bool(co
   return result;
 }
 
-FillResult fillLattice(const Polygon& shape, double spacing) { return fillLattice(shape, spacing, neverBlocked); }
+FillResult fillLattice(const Polygon& shape, double spacing) { return fillLattice(shape, spacing, kNeverBlocked); }
 
 std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random,
                              FunctionRef<bool(const Vec2&)> isBlocked) {
@@ -123,7 +123,7 @@ std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStre
 }
 
 std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random) {
-  return fillRandom(shape, count, random, neverBlocked);
+  return fillRandom(shape, count, random, kNeverBlocked);
 }
 
 PlacedPoints::PlacedPoints(double clearance) : clearance_(clearance) {

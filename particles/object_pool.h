@@ -46,6 +46,9 @@ class ObjectPool {
   Handle create();
   /// As `create`, but null where it would throw (also when memory is short): for use inside steps.
   Handle tryCreate();
+  /// As `tryCreate`, but the object stays what its slot held before, with no initializer: for a caller that sets all of
+  /// it.
+  Handle tryCreateRaw();
   void initialize(Initializer initializer) { initializer_ = std::move(initializer); }
 
   /// PoolError for a null, stale or already released handle. The object is left as it is until its slot is reused.
@@ -88,16 +91,24 @@ class ObjectPool {
   std::size_t memoryBytes() const;
 
  private:
+  struct FreeSlab {
+    std::size_t count;
+    void operator()(T* objects) const;
+  };
+  using Slab = std::unique_ptr<T[], FreeSlab>;
+
   T& at(std::uint32_t slot) { return slabs_[slot >> shift_][slot & mask_]; }
   const T& at(std::uint32_t slot) const { return slabs_[slot >> shift_][slot & mask_]; }
   bool makeRoom();
+  bool tryMakeRoom();
   Handle acquire();
+  void reset(T& object);
   void addSlabs(std::size_t capacity);
 
   PoolSettings settings_;
   PoolCounters counters_;
   SlotTable table_;
-  std::vector<std::unique_ptr<T[]>> slabs_;
+  std::vector<Slab> slabs_;
   AlignedArray<std::byte> packed_;  ///< live objects side by side, while saving and loading
   std::uint32_t shift_, mask_;      ///< a slab holds mask_ + 1 = 2^shift_ objects
   Initializer initializer_;

@@ -82,6 +82,13 @@ class SlotTable {
     tail_ = tail_ + 1 == ring_.size() ? 0 : tail_ + 1;
     ++freeCount_;
   }
+  /// The slot that will be acquired some acquisitions from now, as far as is known: for prefetching. Precondition: not
+  /// full.
+  std::uint32_t upcoming() const {
+    constexpr std::size_t kAhead = 8;
+    const std::size_t at = head_ + (kAhead < freeCount_ ? kAhead : freeCount_ - 1);
+    return ring_[at < ring_.size() ? at : at - ring_.size()];
+  }
   /// The live slot that was acquired first. Preconditions: tracksAge, and at least one is live.
   std::uint32_t oldest() const { return oldest_; }
 
