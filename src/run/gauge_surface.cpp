@@ -8,8 +8,8 @@ namespace froude::run {
 namespace {
 
 constexpr double kWet = 0.5;
-// Between cells dx apart that are both above (below) these, φ stays above (below) ½: its gradient is at most 0.65/dx, at a
-// plane surface, and a void that would dig down to ½ between them shows at the cells around it.
+// Between cells dx apart that are both above (below) these, φ stays above (below) ½: its gradient is at most 0.65/dx,
+// at a plane surface, and a void that would dig down to ½ between them shows at the cells around it.
 constexpr float kSurelyWet = 0.9f, kSurelyDry = 0.1f;
 constexpr float kNotLookedAt = -1.0f;
 constexpr std::int64_t kStripCells = 1 << 20;
@@ -199,7 +199,8 @@ void FluidSurface::scan() {
           state[c] = wet ? Column::Wet : Column::Done;
         } else if (state[c] == Column::Wet && !wet) {
           const Vec2 at = node(i, first + r - 1);
-          top[c] = at.y() + h_ * crossing(at, static_cast<double>(below[i]), node(i, first + r), static_cast<double>(row[i]));
+          top[c] = at.y() +
+                   h_ * crossing(at, static_cast<double>(below[i]), node(i, first + r), static_cast<double>(row[i]));
           state[c] = Column::Done;
         }
       }
@@ -228,7 +229,8 @@ void FluidSurface::scan() {
 
 // Cells of even rows and columns first; between those that are all surely wet, or all surely dry, nothing needs a look.
 // That leaves one φ a particle instead of four. Row 0 may be known from the strip below, at its even columns.
-void FluidSurface::fillStrip(std::vector<float>& phi, std::int64_t firstRow, std::int64_t rows, bool bottomKnown) const {
+void FluidSurface::fillStrip(std::vector<float>& phi, std::int64_t firstRow, std::int64_t rows,
+                             bool bottomKnown) const {
   const std::int64_t w = columns_;
   std::vector<Vec2> points;
   std::vector<std::size_t> places;
@@ -290,8 +292,10 @@ std::vector<std::uint8_t> FluidSurface::bodyMask(std::int64_t firstRow, std::int
     const auto cell = [](double t, std::int64_t end) {
       return static_cast<std::int64_t>(std::clamp(t, -1.0, static_cast<double>(end)));
     };
-    for (std::int64_t r = std::max<std::int64_t>(0, cell(low.y(), rows)); r <= std::min(rows - 1, cell(high.y() + 1.0, rows)); ++r)
-      for (std::int64_t i = std::max<std::int64_t>(0, cell(low.x(), columns_)); i <= std::min(columns_ - 1, cell(high.x() + 1.0, columns_)); ++i) {
+    for (std::int64_t r = std::max<std::int64_t>(0, cell(low.y(), rows));
+         r <= std::min(rows - 1, cell(high.y() + 1.0, rows)); ++r)
+      for (std::int64_t i = std::max<std::int64_t>(0, cell(low.x(), columns_));
+           i <= std::min(columns_ - 1, cell(high.x() + 1.0, columns_)); ++i) {
         if (mask.empty()) mask.assign(static_cast<std::size_t>(rows * columns_), 0);
         mask[static_cast<std::size_t>(r * columns_ + i)] = 1;
       }

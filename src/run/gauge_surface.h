@@ -1,4 +1,5 @@
-// The shape of the fluid, read off the filled fraction φ: area, surface, toe. Looks at one state of a world, alters nothing.
+// The shape of the fluid, read off the filled fraction φ: area, surface, toe. Looks at one state of a world, alters
+// nothing.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@
 
 namespace froude::run {
 
-/// φ is looked at on a grid of dx/2 whose cells tile the domain from its lower left corner; a cell is wet if φ ≥ ½ at its
-/// centre. Only cells within a support radius (2 dx) of a particle are looked at: λ alone reaches ½ in a dry corner, and no
-/// fluid is there. Heights are above the domain's lower side [m]. The bottom of a column is its lowest cell centre outside
-/// solids. Good as long as the world does not change.
+/// φ is looked at on a grid of dx/2 whose cells tile the domain from its lower left corner; a cell is wet if φ ≥ ½ at
+/// its centre. Only cells within a support radius (2 dx) of a particle are looked at: λ alone reaches ½ in a dry
+/// corner, and no fluid is there. Heights are above the domain's lower side [m]. The bottom of a column is its lowest
+/// cell centre outside solids. Good as long as the world does not change.
 class FluidSurface {
  public:
   explicit FluidSurface(const World& world);
@@ -22,12 +23,14 @@ class FluidSurface {
   /// Mean, over the columns whose bottom cell is wet, of the top of the run of wet cells from the bottom, interpolated
   /// linearly in φ between cell centres; NaN where no column is wet [m]. Cost: with `area`, once.
   double level();
-  /// The same top at one x, anywhere between the columns; 0 where the bottom is dry [m]. Cost: one φ a cell of the column.
+  /// The same top at one x, anywhere between the columns; 0 where the bottom is dry [m]. Cost: one φ a cell of the
+  /// column.
   double height(double x) const;
-  /// Largest x of a connected region (over the sides of cells) of wet cells that has a bottom cell, interpolated linearly in
-  /// φ beyond its last centre [m]. Regions under 16 dx² are drops and count only where there is nothing larger; then the
-  /// largest of them does. NaN where there is none. Plates thinner than dx/2 do not part regions, periodic sides do. Cost:
-  /// one φ a cell from the right end of the fluid to where the answer is certain, mostly a few columns.
+  /// Largest x of a connected region (over the sides of cells) of wet cells that has a bottom cell, interpolated
+  /// linearly in φ beyond its last centre [m]. Regions under 16 dx² are drops and count only where there is nothing
+  /// larger; then the largest of them does. NaN where there is none. Plates thinner than dx/2 do not part regions,
+  /// periodic sides do. Cost: one φ a cell from the right end of the fluid to where the answer is certain, mostly a few
+  /// columns.
   double toe() const;
 
  private:
@@ -48,8 +51,9 @@ class FluidSurface {
   const World& world_;
   double dx_ = 0.0, h_ = 0.0;  // [m]
   Vec2 origin_{0, 0};          // of the grid [m]
-  std::int64_t firstColumn_ = 0, columns_ = 0, firstRow_ = 0, rows_ = 0;  // window around the fluid, in cells of the grid
-  double tile_ = 0.0;                                                    // edge of a tile [m]
+  std::int64_t firstColumn_ = 0, columns_ = 0, firstRow_ = 0,
+               rows_ = 0;  // window around the fluid, in cells of the grid
+  double tile_ = 0.0;      // edge of a tile [m]
   std::int64_t tilesX_ = 0, tilesY_ = 0;
   std::vector<std::uint8_t> tiles_;  // not 0: the tile or one beside it holds a particle
   std::optional<double> area_, level_;

@@ -117,7 +117,8 @@ double FluidSurface::toe() const {
           const float next = beyond[static_cast<std::size_t>(j)];
           if (next >= 0.5f || x + h_ <= reach) continue;
           const Vec2 at = node(end - batch + i, j);
-          reach = std::max(reach, x + h_ * crossing(at, static_cast<double>(column[j]), at + Vec2(h_, 0.0), static_cast<double>(next)));
+          reach = std::max(reach, x + h_ * crossing(at, static_cast<double>(column[j]), at + Vec2(h_, 0.0),
+                                                    static_cast<double>(next)));
         }
         runs.push_back({begin, j, regions.add(reach, static_cast<std::size_t>(j - begin), begin == bottom)});
       }
@@ -127,7 +128,8 @@ double FluidSurface::toe() const {
 
       // Certain once no region that still grows to the left reaches farther: it might yet come down to the floor.
       const double best = regions.best();
-      const bool certain = std::none_of(right.begin(), right.end(), [&](const Run& r) { return regions.reach(r.region) > best; });
+      const bool certain =
+          std::none_of(right.begin(), right.end(), [&](const Run& r) { return regions.reach(r.region) > best; });
       if (best > -kInfinity && certain) return best;
     }
   }

@@ -119,11 +119,15 @@ const std::vector<Type>& types() {
       {"count",
        {{"", "1"}},
        [](auto& d, auto, auto& in, Out o) { o[0] = static_cast<double>(in.world().totals(d.species).count); }},
-      {"max_speed", {{"", "m/s"}}, [](auto& d, auto, auto& in, Out o) { o[0] = in.world().totals(d.species).maxSpeed; }},
+      {"max_speed",
+       {{"", "m/s"}},
+       [](auto& d, auto, auto& in, Out o) { o[0] = in.world().totals(d.species).maxSpeed; }},
       {"density_error",
        {{"max", "1"}, {"mean", "1"}},
        [](auto&, auto, auto& in, Out o) { densityError(in.world(), o); }},
-      {"leaks", {{"", "1"}}, [](auto&, auto, auto& in, Out o) { o[0] = static_cast<double>(in.world().ledger().leaks); }},
+      {"leaks",
+       {{"", "1"}},
+       [](auto&, auto, auto& in, Out o) { o[0] = static_cast<double>(in.world().ledger().leaks); }},
   };
   return all;
 }

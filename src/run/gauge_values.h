@@ -11,8 +11,8 @@
 
 namespace froude::run {
 
-/// Columns of a gauge; a pressure with a window has its mean as last column, which `readGauge` does not fill. Throws Error
-/// for a type that is not known, a quantile outside [0, 1] or a profile without points.
+/// Columns of a gauge; a pressure with a window has its mean as last column, which `readGauge` does not fill. Throws
+/// Error for a type that is not known, a quantile outside [0, 1] or a profile without points.
 std::vector<GaugeColumn> gaugeColumns(const scene::GaugeDef& def);
 
 /// The state of a world and what several gauges need of it, computed when first asked for.

@@ -12,8 +12,8 @@ struct ProcessResult {
   bool ok() const { return exitCode == 0; }
 };
 
-/// Runs `arguments` ([0] is the program, with a path or looked up on PATH) in `folder` (empty: here) and waits. Standard
-/// input and output are /dev/null. Throws froude::Error when it cannot be started at all.
+/// Runs `arguments` ([0] is the program, with a path or looked up on PATH) in `folder` (empty: here) and waits.
+/// Standard input and output are /dev/null. Throws froude::Error when it cannot be started at all.
 ProcessResult runProcess(const std::vector<std::string>& arguments, const std::string& folder = {});
 
 }  // namespace froude::run

@@ -1,0 +1,268 @@
+#include "export/png_painter.h"
+
+#include <cairo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "export/frames.h"
+#include "export/png_particles.h"
+#include "run/atomic_file.h"
+
+namespace froude::exporting {
+namespace {
+
+// The layout, in units of 1/1280 of the width.
+constexpr double kMargin = 28.0, kHeader = 60.0, kFooter = 84.0;
+constexpr double kWall = 4.0, kOutline = 1.5;
+constexpr double kTallest = 1.4;       // view, against the picture's width
+constexpr double kSmallestUnit = 0.6;  // letters stay legible in small pictures
+constexpr double kBar = 340.0;
+constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
+
+void grey(cairo_t* cr, double level) { cairo_set_source_rgb(cr, level, level, level); }
+
+/// 0.5 → "0.5 m", 0.002 → "2 mm".
+std::string lengthLabel(double metres) {
+  if (metres >= 1000.0) return fmt::format("{:g} km", metres / 1000.0);
+  if (metres >= 1.0) return fmt::format("{:g} m", metres);
+  if (metres >= 0.01) return fmt::format("{:g} cm", metres * 100.0);
+  if (metres >= 0.001) return fmt::format("{:g} mm", metres * 1000.0);
+  return fmt::format("{:g} µm", metres * 1e6);
+}
+
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+}  // namespace
+
+PngPainter::PngPainter(const scene::Scene& scene)
+    : domain_(scene.world.domain), title_(scene.title), scale_(colorScale(scene)), width_(scene.output.image.width) {
+  view_ = scene.output.image.view;
+  if (view_.empty() || !(view_.size().minCoeff() > 0.0)) view_ = domain_.box;
+  if (title_.empty()) title_ = scene.name;
+  if (scene.world.fluid) {
+    restDensity_ = scene.world.fluid->density;
+    fluidRadius_ = 0.5 * scene.world.fluid->spacing;
+  }
+  if (scene.world.bullet) {
+    bulletDensity_ = scene.world.bullet->density;
+    bulletRadius_ = scene.world.bullet->radius;
+  }
+  // One digit more than the frames need: they are taken at step ends, a little after their times.
+  timeDigits_ = std::clamp(static_cast<int>(std::ceil(-std::log10(scene.output.every))) + 1, 1, 9);
+
+  unit_ = std::max(width_ / 1280.0, kSmallestUnit);
+  const double room = std::max(width_ - 2.0 * kMargin * unit_, 1.0);
+  const Vec2 size = view_.size();
+  pixels_ = std::min(room / size.x(), kTallest * room / size.y());
+  left_ = 0.5 * (width_ - pixels_ * size.x());
+  right_ = left_ + pixels_ * size.x();
+  top_ = std::round(kHeader * unit_);
+  bottom_ = top_ + pixels_ * size.y();
+  height_ = static_cast<int>(std::ceil((bottom_ + kFooter * unit_) / 2.0)) * 2;
+}
+
+void PngPainter::draw(const std::string& file, const World& world) const {
+  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_), cairo_surface_destroy);
+  const Context context(cairo_create(surface.get()), cairo_destroy);
+  cairo_t* cr = context.get();
+  cairo_set_source_rgb(cr, 1, 1, 1);
+  cairo_paint(cr);
+  cairo_surface_flush(surface.get());
+  if (unsigned char* data = cairo_image_surface_get_data(surface.get()))
+    drawParticles(world, data, cairo_image_surface_get_stride(surface.get()));
+  cairo_surface_mark_dirty(surface.get());
+  drawBodies(cr, world);
+  drawSides(cr);
+  drawHeader(cr, world.time());
+  drawScaleBar(cr);
+  drawColorBar(cr);
+
+  std::string png;
+  const auto append = [](void* to, const unsigned char* bytes, unsigned int count) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  cairo_status_t status = cairo_status(cr);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface.get(), append, &png);
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw OutputError(fmt::format("{}: cannot be drawn: {}", file, cairo_status_to_string(status)));
+  run::writeWholeFile(file, png);
+}
+
+void PngPainter::drawParticles(const World& world, std::uint8_t* data, int stride) const {
+  const Canvas canvas{data,
+                      stride,
+                      static_cast<int>(std::lround(left_)),
+                      static_cast<int>(std::lround(top_)),
+                      static_cast<int>(std::lround(right_)),
+                      static_cast<int>(std::lround(bottom_))};
+  std::vector<Disc> discs;
+  for (const ParticlePool* pool : {world.fluid(), world.bullets()}) {
+    if (pool == nullptr || pool->empty()) continue;
+    const bool isFluid = pool == world.fluid();
+    const double radius = isFluid ? fluidRadius_ * pixels_ : std::max(bulletRadius_ * pixels_, 0.75 * unit_);
+    const Box seen = view_.grown((radius + 1.0) / pixels_);
+    const auto pressure = pool->findColumn<float>("pressure"), density = pool->findColumn<float>("density");
+    const auto x = pool->x(), y = pool->y(), vx = pool->vx(), vy = pool->vy();
+    discs.clear();
+    for (std::size_t i = 0; i < pool->size(); ++i) {
+      const Vec2 p(x[i], y[i]);
+      if (!seen.contains(p)) continue;
+      double value = std::nan("");
+      if (scale_.quantity == ColorScale::Quantity::Speed)
+        value = std::hypot(vx[i], vy[i]);
+      else if (scale_.quantity == ColorScale::Quantity::Pressure && isFluid && pressure)
+        value = restDensity_ * static_cast<double>(pool->column(*pressure)[i]);
+      else if (scale_.quantity == ColorScale::Quantity::Density && isFluid && density)
+        value = restDensity_ * static_cast<double>(pool->column(*density)[i]);
+      const Vec2 at = toPixel(p);
+      discs.push_back(
+          {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(scale_.position(value))});
+    }
+    paintDiscs(canvas, discs, radius);
+  }
+}
+
+void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
+  cairo_save(cr);
+  cairo_rectangle(cr, left_, top_, right_ - left_, bottom_ - top_);
+  cairo_clip(cr);
+  cairo_set_line_width(cr, kOutline * unit_);
+  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  for (std::size_t b = 0; b < world.bodyCount(); ++b) {
+    const Polygon& shape = *world.bodyDefinition(b).shape;
+    const Transform& transform = world.body(b).transform;
+    const auto starts = shape.ringStarts();
+    for (std::size_t ring = 0; ring + 1 < starts.size(); ++ring) {
+      for (std::uint32_t v = starts[ring]; v < starts[ring + 1]; ++v) {
+        const Vec2 p = toPixel(transform.toWorld(shape.vertices()[v]));
+        cairo_line_to(cr, p.x(), p.y());
+      }
+      cairo_close_path(cr);
+    }
+    grey(cr, kBody);
+    cairo_fill_preserve(cr);  // holes run the other way round, so the winding rule leaves them out
+    grey(cr, kDark);
+    cairo_stroke(cr);
+  }
+  cairo_restore(cr);
+}
+
+void PngPainter::drawSides(cairo_t* cr) const {
+  const Box& box = domain_.box;
+  const double half = 0.5 * kWall * unit_;
+  for (int side = 0; side < 4; ++side) {
+    const bool vertical = side < 2;
+    const double at = vertical ? (side == 0 ? box.min.x() : box.max.x()) : (side == 2 ? box.min.y() : box.max.y());
+    const int along = vertical ? 1 : 0, across = 1 - along;
+    const double slack = 1e-6 * view_.size()[across];
+    if (at < view_.min[across] - slack || at > view_.max[across] + slack) continue;
+    const double from = std::max(box.min[along], view_.min[along]), to = std::min(box.max[along], view_.max[along]);
+    if (!(from < to)) continue;
+    const bool closed = domain_.closed[static_cast<std::size_t>(side)];
+    const Vec2 outward = side == 0 ? Vec2(-1, 0) : side == 1 ? Vec2(1, 0) : side == 2 ? Vec2(0, 1) : Vec2(0, -1);
+    Vec2 a, b;
+    a[across] = b[across] = at;
+    a[along] = from;
+    b[along] = to;
+    // A wall's inner face is where the water ends, so the line lies outside of it.
+    const Vec2 shift = closed ? Vec2(half * outward) : Vec2(0, 0);
+    a = toPixel(a) + shift;
+    b = toPixel(b) + shift;
+    grey(cr, closed ? kDark : kGrey);
+    cairo_set_line_width(cr, closed ? 2.0 * half : kOutline * unit_);
+    cairo_set_line_cap(cr, closed ? CAIRO_LINE_CAP_SQUARE : CAIRO_LINE_CAP_BUTT);
+    const double dashes[] = {6.0 * unit_, 5.0 * unit_};
+    cairo_set_dash(cr, dashes, closed ? 0 : 2, 0.0);
+    cairo_move_to(cr, a.x(), a.y());
+    cairo_line_to(cr, b.x(), b.y());
+    cairo_stroke(cr);
+  }
+  cairo_set_dash(cr, nullptr, 0, 0.0);
+}
+
+/// `align` 0: begins at x, ½: centred, 1: ends at x. y is the base line.
+void PngPainter::text(cairo_t* cr, const std::string& text, double x, double y, double align) const {
+  cairo_text_extents_t e;
+  cairo_text_extents(cr, text.c_str(), &e);
+  cairo_move_to(cr, x - align * e.x_advance, y);
+  cairo_show_text(cr, text.c_str());
+}
+
+void PngPainter::drawHeader(cairo_t* cr, double time) const {
+  const double margin = kMargin * unit_, base = top_ - 20.0 * unit_;
+  cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cr, 20.0 * unit_);
+  grey(cr, kDark);
+  const std::string clock = fmt::format("t = {:.{}f} s", time, timeDigits_);
+  text(cr, clock, width_ - margin, base, 1.0);
+  cairo_text_extents_t e;
+  cairo_text_extents(cr, clock.c_str(), &e);
+  const double room = width_ - 3.0 * margin - e.x_advance;
+
+  std::string title = title_;
+  for (cairo_text_extents(cr, title.c_str(), &e); e.x_advance > room && !title.empty();
+       cairo_text_extents(cr, (title + "…").c_str(), &e)) {
+    while (!title.empty() && (static_cast<unsigned char>(title.back()) & 0xC0u) == 0x80u) title.pop_back();
+    if (!title.empty()) title.pop_back();
+  }
+  if (title.size() < title_.size()) title += "…";
+  text(cr, title, margin, base, 0.0);
+}
+
+void PngPainter::drawScaleBar(cairo_t* cr) const {
+  const std::vector<double> lengths = niceTicks(0.0, 0.18 * (right_ - left_) / pixels_, 1);
+  const double metres =
+      lengths.back() > 0.0 ? lengths.back() : niceTicks(0.0, 0.18 * (right_ - left_) / pixels_, 3).back();
+  const double x = std::max(left_, kMargin * unit_), y = bottom_ + 34.0 * unit_, tick = 5.0 * unit_;
+  const double end = x + metres * pixels_;
+  grey(cr, kDark);
+  cairo_set_line_width(cr, 2.0 * unit_);
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+  cairo_move_to(cr, x, y - tick);
+  cairo_line_to(cr, x, y + tick);
+  cairo_move_to(cr, x, y);
+  cairo_line_to(cr, end, y);
+  cairo_move_to(cr, end, y - tick);
+  cairo_line_to(cr, end, y + tick);
+  cairo_stroke(cr);
+  cairo_set_font_size(cr, 16.0 * unit_);
+  text(cr, lengthLabel(metres), 0.5 * (x + end), y + 26.0 * unit_, 0.5);
+}
+
+void PngPainter::drawColorBar(cairo_t* cr) const {
+  const double length = std::min(kBar * unit_, 0.4 * width_), tall = 14.0 * unit_;
+  const double end = width_ - kMargin * unit_ - 8.0 * unit_, x = end - length, y = bottom_ + 26.0 * unit_;
+  cairo_pattern_t* gradient = cairo_pattern_create_linear(x, 0, end, 0);
+  for (int k = 0; k <= 20; ++k) {
+    const Color c = viridis(k / 20.0);
+    cairo_pattern_add_color_stop_rgb(gradient, k / 20.0, c.r / 255.0, c.g / 255.0, c.b / 255.0);
+  }
+  cairo_rectangle(cr, x, y, length, tall);
+  cairo_set_source(cr, gradient);
+  cairo_fill_preserve(cr);
+  cairo_pattern_destroy(gradient);
+  grey(cr, kDark);
+  cairo_set_line_width(cr, 1.0 * unit_);
+  cairo_stroke(cr);
+  cairo_set_font_size(cr, 16.0 * unit_);
+  text(cr, scale_.label, x - 16.0 * unit_, y + tall, 1.0);
+  for (const double tick : niceTicks(scale_.low * scale_.factor, scale_.high * scale_.factor, 5)) {
+    const double at = x + length * scale_.position(tick / scale_.factor);
+    cairo_move_to(cr, at, y + tall);
+    cairo_line_to(cr, at, y + tall + 5.0 * unit_);
+    cairo_stroke(cr);
+    text(cr, fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0.0 : tick), at, y + tall + 23.0 * unit_, 0.5);
+  }
+}
+
+void drawPng(const std::string& file, const World& world, const scene::Scene& scene) {
+  PngPainter(scene).draw(file, world);
+}
+
+}  // namespace froude::exporting

@@ -1,0 +1,210 @@
+#include "export/segments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <froude/base/parallel.h>
+#include "export/frames.h"
+#include "run/atomic_file.h"
+
+namespace froude::exporting {
+namespace {
+
+constexpr std::size_t kGrowth = 8 << 20;        // of a segment in memory [bytes]
+constexpr std::size_t kIndexGrowth = 64 << 10;  // [bytes]
+constexpr double kPositionError = 1e-3;         // of the smallest length
+
+/// The columns of a frame, fluid first.
+struct Columns {
+  std::vector<double> position64;
+  std::vector<float> position32, velocity, pressure, density;
+  std::vector<std::uint8_t> species;
+  std::vector<std::uint32_t> id;
+
+  Columns(std::size_t count, bool wide)
+      : position64(wide ? 2 * count : 0),
+        position32(wide ? 0 : 2 * count),
+        velocity(2 * count),
+        pressure(count),
+        density(count),
+        species(count),
+        id(count) {}
+
+  void fill(const ParticlePool& pool, std::size_t first, std::uint8_t kind, double restDensity) {
+    const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+    const auto birth = pool.birth();
+    const auto p = pool.findColumn<float>("pressure"), d = pool.findColumn<float>("density");
+    const bool fluid = kind == 0;
+    parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t o = first + i;
+        if (!position64.empty()) {
+          position64[2 * o] = x[i];
+          position64[2 * o + 1] = y[i];
+        } else {
+          position32[2 * o] = static_cast<float>(x[i]);
+          position32[2 * o + 1] = static_cast<float>(y[i]);
+        }
+        velocity[2 * o] = static_cast<float>(vx[i]);
+        velocity[2 * o + 1] = static_cast<float>(vy[i]);
+        pressure[o] = fluid && p ? static_cast<float>(restDensity * static_cast<double>(pool.column(*p)[i])) : 0.0f;
+        const double relative = fluid && d ? static_cast<double>(pool.column(*d)[i]) : 1.0;
+        density[o] = static_cast<float>(restDensity * relative);
+        species[o] = kind;
+        id[o] = static_cast<std::uint32_t>(birth[i]);
+      }
+    });
+  }
+};
+
+std::vector<double> bodyRows(const World& world) {
+  std::vector<double> rows;
+  for (std::size_t b = 0; b < world.bodyCount(); ++b) {
+    const BodyState& s = world.body(b);
+    const Vec2& at = s.transform.position;
+    rows.insert(rows.end(), {at.x(), at.y(), s.angle, s.velocity.x(), s.velocity.y(), s.spin});
+  }
+  return rows;
+}
+
+template <typename T>
+T readAttribute(hid_t object, const char* name, hid_t type) {
+  T value{};
+  const Hdf5Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);
+  checkHdf5(H5Aread(attribute, type, &value), name);
+  return value;
+}
+
+}  // namespace
+
+std::string frameName(int index) { return fmt::format("frame_{:05}", index); }
+std::string segmentFile(int segment) { return fmt::format("frames/{:04}.h5", segment); }
+
+int positionBytes(const WorldDef& def) {
+  double length = kInfinity;
+  if (def.fluid) length = std::min(length, def.fluid->spacing);
+  if (def.bullet) length = std::min(length, def.bullet->radius);
+  const double farthest = std::max(def.domain.box.min.cwiseAbs().maxCoeff(), def.domain.box.max.cwiseAbs().maxCoeff());
+  return farthest * std::ldexp(1.0, -24) > kPositionError * length ? 8 : 4;
+}
+
+Segment::Segment(int number) : number_(number), file_(kGrowth) {}
+
+void Segment::add(const World& world, int index) {
+  const ParticlePool *fluid = world.fluid(), *bullets = world.bullets();
+  const std::size_t fluidCount = fluid != nullptr ? fluid->size() : 0;
+  const std::size_t count = fluidCount + (bullets != nullptr ? bullets->size() : 0);
+  const WorldDef& def = world.definition();
+  const FrameEntry entry{index, number_, world.time(), count, positionBytes(def)};
+  const bool wide = entry.positionBytes == 8;
+  Columns c(count, wide);
+  if (fluidCount > 0) c.fill(*fluid, 0, 0, def.fluid->density);
+  if (count > fluidCount) c.fill(*bullets, fluidCount, 1, def.bullet->density);
+  const std::vector<double> bodies = bodyRows(world);
+
+  const std::string name = frameName(index);
+  const Hdf5Handle group(H5Gcreate2(file_.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, name);
+  writeAttribute(group, "index", index);
+  writeAttribute(group, "time", entry.time);
+  const hsize_t n = count;
+  const hid_t f32 = H5T_NATIVE_FLOAT, f64 = H5T_NATIVE_DOUBLE, f32le = H5T_IEEE_F32LE, f64le = H5T_IEEE_F64LE;
+  if (wide)
+    writeColumn(group, {"position", "m", f64, f64le, {n, 2}, c.position64.data()});
+  else
+    writeColumn(group, {"position", "m", f32, f32le, {n, 2}, c.position32.data()});
+  writeColumn(group, {"velocity", "m/s", f32, f32le, {n, 2}, c.velocity.data()});
+  writeColumn(group, {"pressure", "N/m", f32, f32le, {n, 1}, c.pressure.data()});
+  writeColumn(group, {"density", "kg/m²", f32, f32le, {n, 1}, c.density.data()});
+  writeColumn(group, {"species", "", H5T_NATIVE_UINT8, H5T_STD_U8LE, {n, 1}, c.species.data()});
+  writeColumn(group, {"id", "", H5T_NATIVE_UINT32, H5T_STD_U32LE, {n, 1}, c.id.data()});
+  writeColumn(group, {"bodies", "m, m, rad, m/s, m/s, rad/s", f64, f64le, {world.bodyCount(), 6}, bodies.data()});
+  frames_.push_back(entry);
+}
+
+void Segment::copy(const std::string& file, const FrameEntry& frame) {
+  const Hdf5Handle from(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, file);
+  const std::string name = frameName(frame.index);
+  checkHdf5(H5Ocopy(from, name.c_str(), file_.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), file);
+  frames_.push_back(frame);
+  frames_.back().segment = number_;
+}
+
+std::vector<FrameEntry> readSegment(const std::string& folder, int segment) {
+  const std::string path = folder + "/" + segmentFile(segment);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t opened = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (opened < 0) throw OutputError(path + ": cannot be read: it is not a whole HDF5 file");
+  const Hdf5Handle file(opened, H5Fclose, path);
+  H5G_info_t info{};
+  checkHdf5(H5Gget_info(file, &info), path);
+  std::vector<FrameEntry> frames;
+  for (hsize_t k = 0; k < info.nlinks; ++k) {
+    char name[64] = {};
+    H5Lget_name_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, k, name, sizeof name, H5P_DEFAULT);
+    const Hdf5Handle group(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, path);
+    const Hdf5Handle position(H5Dopen2(group, "position", H5P_DEFAULT), H5Dclose, path);
+    const Hdf5Handle space(H5Dget_space(position), H5Sclose, path);
+    const Hdf5Handle type(H5Dget_type(position), H5Tclose, path);
+    hsize_t shape[2] = {0, 0};
+    H5Sget_simple_extent_dims(space, shape, nullptr);
+    frames.push_back({readAttribute<int>(group, "index", H5T_NATIVE_INT), segment,
+                      readAttribute<double>(group, "time", H5T_NATIVE_DOUBLE), static_cast<std::size_t>(shape[0]),
+                      static_cast<int>(H5Tget_size(type))});
+  }
+  std::sort(frames.begin(), frames.end(), [](const FrameEntry& a, const FrameEntry& b) { return a.index < b.index; });
+  return frames;
+}
+
+namespace {
+
+std::string xdmfAttribute(const FrameEntry& f, const char* name, const char* kind, const char* number, int precision) {
+  return fmt::format(
+      "        <Attribute Name=\"{0}\" AttributeType=\"{1}\" Center=\"Node\">\n"
+      "          <DataItem Dimensions=\"{2}{3}\" NumberType=\"{4}\" Precision=\"{5}\" "
+      "Format=\"HDF\">{6}:/{7}/{0}</DataItem>\n"
+      "        </Attribute>\n",
+      name, kind, f.particles, std::string_view(kind) == "Vector" ? " 2" : "", number, precision,
+      segmentFile(f.segment), frameName(f.index));
+}
+
+std::string xdmfGrid(const FrameEntry& f) {
+  std::string grid = fmt::format(
+      "      <Grid Name=\"{0}\" GridType=\"Uniform\">\n"
+      "        <Time Value=\"{1:.17g}\"/>\n"
+      "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{2}\" NodesPerElement=\"1\"/>\n"
+      "        <Geometry GeometryType=\"XY\">\n"
+      "          <DataItem Dimensions=\"{2} 2\" NumberType=\"Float\" Precision=\"{3}\" "
+      "Format=\"HDF\">{4}:/{0}/position</DataItem>\n"
+      "        </Geometry>\n",
+      frameName(f.index), f.time, f.particles, f.positionBytes, segmentFile(f.segment));
+  grid += xdmfAttribute(f, "velocity", "Vector", "Float", 4);
+  grid += xdmfAttribute(f, "pressure", "Scalar", "Float", 4);
+  grid += xdmfAttribute(f, "density", "Scalar", "Float", 4);
+  grid += xdmfAttribute(f, "species", "Scalar", "UChar", 1);
+  grid += xdmfAttribute(f, "id", "Scalar", "UInt", 4);
+  return grid + "      </Grid>\n";
+}
+
+}  // namespace
+
+void writeIndex(const std::string& folder, const std::vector<FrameEntry>& frames) {
+  Hdf5Memory links(kIndexGrowth);
+  std::string xdmf =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<Xdmf Version=\"2.0\">\n"
+      "  <Domain>\n"
+      "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (const FrameEntry& f : frames) {
+    const std::string name = frameName(f.index), path = "/" + name, segment = segmentFile(f.segment);
+    checkHdf5(H5Lcreate_external(segment.c_str(), path.c_str(), links.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+              folder + "/frames.h5");
+    if (f.particles > 0) xdmf += xdmfGrid(f);
+  }
+  xdmf += "    </Grid>\n  </Domain>\n</Xdmf>\n";
+  links.save(folder + "/frames.h5");
+  run::writeWholeFile(folder + "/frames.xdmf", xdmf);
+}
+
+}  // namespace froude::exporting
