@@ -1,0 +1,316 @@
+// The one file that includes CLI11: all options of all commands, their help and their checks.
+#include <fmt/format.h>
+#include <froude/version.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "cli/request.h"
+#include "run/exit_codes.h"
+#include "scene/document.h"
+
+namespace froude::cli {
+namespace {
+
+using run::UsageError;
+
+constexpr std::array<std::string_view, 5> kCommands{"run", "check", "explain", "resume", "doctor"};
+constexpr int kMostThreads = 1024;
+
+constexpr std::string_view kRunFooter = R"(Example:
+  froude run scenes/dam_break.toml -o out/dam --set model.spacing=0.02 --frames png
+
+The last line on stdout is the run's folder; pictures, gauges.csv and summary.json are in it.
+Exit codes: 0 done; 1 internal error; 2 the command line or the scene is wrong, nothing was written;
+3 the simulation went unstable and was stopped, the last sound state is kept; 4 input or output failed;
+130 SIGINT and 143 SIGTERM, both after a checkpoint (a second signal ends at once).)";
+
+constexpr std::string_view kResumeFooter = R"(Example:
+  froude resume out/dam
+
+The run goes on from its checkpoint.h5 with the same bits as if it had never stopped. Files later than the checkpoint
+are dropped first. The last line on stdout is the run's folder.
+Exit codes: 0 done, or there was nothing left to do; 1 internal error; 2 this is not the folder of a run, it has no
+checkpoint, or it was computed with another SIMD target; 3 unstable; 4 the checkpoint cannot be read, or output failed;
+130 SIGINT and 143 SIGTERM, both after a checkpoint.)";
+
+constexpr std::string_view kCheckFooter = R"(Example:
+  froude check scenes/*.toml --strict
+
+Problems go to stderr as FILE:LINE:COLUMN: key: what is wrong, what would be right.
+Exit codes: 0 all scenes can be run (warnings are told); 1 internal error; 2 a scene is wrong, or with --strict has
+warnings; 4 the findings cannot be written.)";
+
+constexpr std::string_view kExplainFooter = R"(Example:
+  froude explain scenes/dam_break.toml
+
+Runs the first moments of the scene to measure what a step costs; writes nothing.
+Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanation cannot be written.)";
+
+constexpr std::string_view kDoctorFooter = R"(Example:
+  froude doctor --json
+
+Exit codes: 0 told; 1 internal error; 2 the command line is wrong; 4 the findings cannot be written.)";
+
+CLI::Validator wholeNumber(int low, int high) {
+  return {[=](std::string& text) -> std::string {
+            int value = 0;
+            if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+            return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+          },
+          "N"};
+}
+
+CLI::Validator seconds() {
+  return {[](std::string& text) -> std::string {
+            double value = 0.0;
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
+            return fmt::format("'{}' is not a time in seconds, 0 or more", text);
+          },
+          "SECONDS"};
+}
+
+// Options as they are typed; what needs more than a look is judged after parsing.
+struct Typed {
+  run::RunOptions run;
+  run::ResumeOptions resume;
+  CheckRequest check;
+  ExplainRequest explain;
+  DoctorRequest doctor;
+  std::vector<std::string> sets;
+  std::string accuracy, frames, simd;
+  double until = 0.0;
+};
+
+void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& typed) {
+  command.add_option("--threads", session.threads, "threads to compute with; default: all usable cores")
+      ->check(wholeNumber(1, kMostThreads))
+      ->type_name("N");
+  command.add_option("--until", typed.until, "end at this simulated time instead of the scene's duration")
+      ->check(seconds())
+      ->type_name("SECONDS");
+  command.add_option("--simd", typed.simd, "instruction set: scalar, sse4, avx2 or avx3")->type_name("TARGET");
+  command.add_flag("--trace-leaks", session.traceLeaks, "tell every sub-step in which a particle crossed a wall");
+  command.add_flag("--quiet", session.quiet, "errors only; the folder is still the last line on stdout");
+  command.add_flag("--verbose", session.verbose, "a line for every 100th sub-step: its length and what bound it");
+}
+
+void addRun(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("run", "run a scene to its end");
+  command.add_option("SCENE", typed.run.scene, "the scene, a .toml file")->type_name("");
+  command.add_option("-o", typed.run.folder, "the run's folder, absent or empty; default: out/SCENE, out/SCENE-2, ...")
+      ->type_name("DIR");
+  command.add_flag("--force", typed.run.session.force, "replace the files of an earlier run in the folder");
+  command.add_option("--set", typed.sets, "change a key of the scene, for example model.spacing=0.02; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("PATH=VALUE");
+  command.add_option("--accuracy", typed.accuracy, "not in this version")->type_name("P%");
+  command.add_option("--frames", typed.frames, "frames to write instead of the scene's: png,h5 or none")
+      ->type_name("LIST");
+  addSessionOptions(command, typed.run.session, typed);
+  command.footer(std::string(kRunFooter));
+}
+
+void addResume(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("resume", "go on with a run that was stopped");
+  command.add_option("DIR", typed.resume.folder, "the run's folder")->type_name("");
+  command.add_flag("--force", typed.resume.session.force, "go on although the SIMD target, and so the bits, differ");
+  addSessionOptions(command, typed.resume.session, typed);
+  command.footer(std::string(kResumeFooter));
+}
+
+void addReaders(CLI::App& app, Typed& typed) {
+  CLI::App& check = *app.add_subcommand("check", "read and judge scenes, run nothing");
+  check.add_option("SCENE", typed.check.scenes, "scenes, .toml files")->type_name("");
+  check.add_flag("--strict", typed.check.strict, "a warning is an error");
+  check.add_flag("--json", typed.check.json, "findings as JSON on stdout");
+  check.footer(std::string(kCheckFooter));
+
+  CLI::App& explain = *app.add_subcommand("explain", "say what of a scene is modelled and why, and what it will cost");
+  explain.add_option("SCENE", typed.explain.scene, "the scene, a .toml file")->type_name("");
+  explain.add_flag("--json", typed.explain.json, "as JSON");
+  explain.footer(std::string(kExplainFooter));
+
+  CLI::App& doctor = *app.add_subcommand("doctor", "say what this build and this machine are");
+  doctor.add_flag("--json", typed.doctor.json, "as JSON");
+  doctor.footer(std::string(kDoctorFooter));
+}
+
+std::vector<std::string> commandNames() { return {kCommands.begin(), kCommands.end()}; }
+
+std::string helpHint(std::string_view command) {
+  return fmt::format("; `froude {}{}--help` shows what there is", command, command.empty() ? "" : " ");
+}
+
+void requireKnownCommand(const std::vector<std::string>& arguments) {
+  const std::string commands = fmt::format("{}", fmt::join(kCommands, ", "));
+  if (arguments.size() < 2) throw UsageError("a command is missing; there are " + commands + helpHint(""));
+  const std::string& word = arguments[1];
+  if (word.starts_with('-') || std::find(kCommands.begin(), kCommands.end(), word) != kCommands.end()) return;
+  throw UsageError(
+      fmt::format("there is no command '{}'{}; there are {}", word, scene::suggestion(word, commandNames()), commands));
+}
+
+std::vector<std::string> optionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+// What no option and no place took.
+void refuseExtras(const CLI::App& command) {
+  const std::vector<std::string> extras = command.remaining();
+  if (extras.empty()) return;
+  const std::string& word = extras.front();
+  const std::string hint = helpHint(command.get_name());
+  if (word.starts_with('-')) {
+    const std::string bare = word.substr(0, word.find('='));
+    throw UsageError(
+        fmt::format("{}: there is no such option{}{}", word, scene::suggestion(bare, optionNames(command)), hint));
+  }
+  throw UsageError(fmt::format("'{}' is one argument too many{}", word, hint));
+}
+
+void require(const std::string& value, std::string_view command, std::string_view what) {
+  if (value.empty()) throw UsageError(fmt::format("{}: {} is missing{}", command, what, helpHint(command)));
+}
+
+std::optional<SimdTarget> targetNamed(const std::string& word) {
+  if (word.empty()) return std::nullopt;
+  const std::optional<SimdTarget> target = simdTarget(word);
+  const std::vector<SimdTarget> here = supportedSimdTargets();
+  if (target && std::find(here.begin(), here.end(), *target) != here.end()) return target;
+  std::vector<std::string> names;
+  for (const SimdTarget t : here) names.emplace_back(name(t));
+  throw UsageError(fmt::format("--simd {}: this {}; here there are {}", word,
+                               target ? "processor does not have it" : "is no SIMD target", fmt::join(names, ", ")));
+}
+
+// The list of --frames as a value of the scene's key.
+std::string framesValue(const std::string& text) {
+  if (text == "none") return "[]";
+  const std::vector<std::string> known{"png", "h5", "none"};
+  std::vector<std::string> kinds;
+  for (const std::string& kind : CLI::detail::split(text, ',')) {
+    if (kind == "vdb") throw UsageError("--frames vdb: not in this version; png and h5 are");
+    if (kind != "png" && kind != "h5") {
+      throw UsageError(
+          fmt::format("--frames {}: there is no kind of frames '{}'{}; name png, h5 or both as png,h5, or none", text,
+                      kind, scene::suggestion(kind, known)));
+    }
+    kinds.push_back('"' + kind + '"');
+  }
+  return fmt::format("[{}]", fmt::join(kinds, ", "));
+}
+
+scene::Override overrideOf(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals != std::string::npos && equals > 0) return {text.substr(0, equals), text.substr(equals + 1)};
+  throw UsageError(fmt::format("--set {}: PATH=VALUE is wanted, for example --set model.spacing=0.02", text));
+}
+
+void finishSession(run::SessionOptions& session, const Typed& typed, const CLI::App& command,
+                   const std::vector<std::string>& arguments) {
+  if (command.count("--until") > 0) session.until = typed.until;
+  session.simd = targetNamed(typed.simd);
+  session.command = quoted(arguments);
+}
+
+run::RunOptions finishRun(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
+  require(typed.run.scene, "run", "the scene, SCENE.toml,");
+  if (command.count("--accuracy") > 0) {
+    throw UsageError(
+        "--accuracy: not in this version: nothing chooses a model yet; name it in the scene as model.fluid");
+  }
+  for (const std::string& text : typed.sets) typed.run.overrides.push_back(overrideOf(text));
+  if (command.count("--frames") > 0) typed.run.overrides.emplace_back("output.frames", framesValue(typed.frames));
+  if (command.count("-o") > 0) require(typed.run.folder, "run", "the folder behind -o");
+  finishSession(typed.run.session, typed, command, arguments);
+  return std::move(typed.run);
+}
+
+Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
+  const std::string& name = command.get_name();
+  if (name == "run") return finishRun(typed, command, arguments);
+  if (name == "resume") {
+    require(typed.resume.folder, "resume", "the run's folder, DIR,");
+    finishSession(typed.resume.session, typed, command, arguments);
+    return typed.resume;
+  }
+  if (name == "check") {
+    require(typed.check.scenes.empty() ? "" : "given", "check", "a scene, SCENE.toml,");
+    return typed.check;
+  }
+  if (name == "explain") {
+    require(typed.explain.scene, "explain", "the scene, SCENE.toml,");
+    return typed.explain;
+  }
+  return typed.doctor;
+}
+
+std::string versionLine() {
+  return fmt::format("froude {} (commit {}, SIMD {})\n", FROUDE_VERSION, FROUDE_COMMIT, name(bestSimdTarget()));
+}
+
+}  // namespace
+
+std::string quoted(const std::vector<std::string>& arguments) {
+  std::string text;
+  for (const std::string& word : arguments) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 ||
+             std::string_view("_-+=./,:@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (!text.empty()) text += ' ';
+    if (plain) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    text += '\'';
+  }
+  return text;
+}
+
+Request parseCommandLine(const std::vector<std::string>& arguments) {
+  requireKnownCommand(arguments);
+  Typed typed;
+  CLI::App app("Froude: particles, fluids and soft bodies among rigid polygons, in two dimensions.", "froude");
+  app.set_version_flag("--version", versionLine(), "version, commit and SIMD target");
+  app.allow_extras();
+  addRun(app, typed);
+  addReaders(app, typed);
+  addResume(app, typed);
+  app.footer(
+      "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"
+      "  froude run scenes/dam_break.toml\nExit codes: 0 done; 2 the command line is wrong; others by command.");
+  for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
+
+  std::vector<const char*> words;
+  for (const std::string& word : arguments) words.push_back(word.c_str());
+  try {
+    app.parse(static_cast<int>(words.size()), words.data());
+  } catch (const CLI::CallForVersion&) {
+    return PrintRequest{versionLine()};
+  } catch (const CLI::CallForHelp&) {
+    return PrintRequest{app.help()};
+  } catch (const CLI::ParseError& e) {
+    const std::vector<CLI::App*> chosen = app.get_subcommands();
+    throw UsageError(e.what() + helpHint(chosen.empty() ? "" : chosen.front()->get_name()));
+  }
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  for (const CLI::App* command : chosen) refuseExtras(*command);
+  refuseExtras(app);
+  if (chosen.empty()) requireKnownCommand({arguments.front()});
+  if (chosen.size() > 1) throw UsageError("two commands at once: " + chosen[1]->get_name() + "; give one");
+  return finish(typed, *chosen.front(), arguments);
+}
+
+}  // namespace froude::cli

@@ -1,0 +1,64 @@
+#include "cli/program.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "cli/doctor.h"
+#include "cli/explain.h"
+#include "cli/request.h"
+#include "export/frames.h"
+#include "run/exit_codes.h"
+#include "run/progress.h"
+
+namespace froude::cli {
+namespace {
+
+using namespace run;
+
+// Runs what was asked for, one overload for each.
+struct Dispatch {
+  int operator()(const PrintRequest& r) const { return fmt::print("{}", r.text), kDone; }
+  int operator()(const RunOptions& r) const { return runScene(r); }
+  int operator()(const ResumeOptions& r) const { return resumeRun(r); }
+  int operator()(const CheckRequest& r) const { return scene::checkCommand(r.scenes, r.strict, r.json); }
+  int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
+  int operator()(const DoctorRequest& r) const { return doctorCommand(r.json); }
+};
+
+int fail(int code, const std::string& what) {
+  fmt::print(stderr, "{}{}\n", label("error"), what);
+  return code;
+}
+
+int dispatch(int argc, const char* const* argv) {
+  try {
+    return std::visit(Dispatch{}, parseCommandLine({argv, argv + argc}));
+  } catch (const scene::SceneError& e) {
+    fmt::print(stderr, "{}\n", e.what());  // begins with FILE:LINE:COLUMN, so that editors find the place
+    return kUsageError;
+  } catch (const UsageError& e) {
+    return fail(kUsageError, e.what());
+  } catch (const InputError& e) {
+    return fail(kOutputError, e.what());
+  } catch (const exporting::OutputError& e) {
+    return fail(kOutputError, e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kInternalError, "there is not enough memory");
+  } catch (const std::exception& e) {
+    return fail(kInternalError, std::string("internal: ") + e.what());
+  }
+}
+
+}  // namespace
+
+int runProgram(int argc, const char* const* argv) {
+  const int code = dispatch(argc, argv);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return fail(code == kDone ? int{kOutputError} : code, "standard output cannot be written");
+}
+
+}  // namespace froude::cli

@@ -1,0 +1,38 @@
+// What a command line asks for, as plain values.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "run/run.h"
+
+namespace froude::cli {
+
+/// `--help` and `--version`: a text for stdout.
+struct PrintRequest {
+  std::string text;
+};
+struct CheckRequest {
+  std::vector<std::string> scenes;
+  bool strict = false, json = false;
+};
+struct ExplainRequest {
+  std::string scene;
+  bool json = false;
+};
+struct DoctorRequest {
+  bool json = false;
+};
+
+using Request =
+    std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest, DoctorRequest>;
+
+/// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
+/// right.
+Request parseCommandLine(const std::vector<std::string>& arguments);
+
+/// The words of a command line as a shell would take them back.
+std::string quoted(const std::vector<std::string>& arguments);
+
+}  // namespace froude::cli

@@ -1,0 +1,4 @@
+// The program froude; all of it is behind runProgram, so that tests can link it.
+#include "cli/program.h"
+
+int main(int argc, char** argv) { return froude::cli::runProgram(argc, argv); }
