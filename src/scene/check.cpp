@@ -1,0 +1,106 @@
+// froude check: reads and judges scenes, runs nothing.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "run/machine.h"
+#include "scene/estimate.h"
+#include "scene/scene.h"
+
+namespace froude::scene {
+
+namespace {
+
+struct Verdict {
+  std::string file;
+  std::vector<std::string> errors;
+  nlohmann::json errorDetails = nlohmann::json::array();
+  std::optional<Scene> scene;
+  Estimate cost;
+};
+
+Verdict judgeFile(const std::string& file) {
+  Verdict verdict;
+  verdict.file = file;
+  try {
+    Scene scene = load(file);
+    verdict.cost = estimate(scene);
+    verdict.scene = std::move(scene);
+  } catch (const SceneError& error) {
+    verdict.errors.push_back(error.what());
+    verdict.errorDetails.push_back({{"line", error.place().line},
+                                    {"column", error.place().column},
+                                    {"key", error.key()},
+                                    {"message", error.what()}});
+  } catch (const Error& error) {
+    verdict.errors.push_back(file + ":0:0: scene: " + error.what());
+    verdict.errorDetails.push_back({{"line", 0}, {"column", 0}, {"key", "scene"}, {"message", verdict.errors.back()}});
+  }
+  return verdict;
+}
+
+std::string sentence(const Verdict& verdict) {
+  if (!verdict.scene) return "wrong";
+  const Scene& scene = *verdict.scene;
+  std::string text = scene.warnings.empty() ? "sound"
+                                            : fmt::format("runs, with {} warning{}", scene.warnings.size(),
+                                                          scene.warnings.size() == 1 ? "" : "s");
+  text += fmt::format(": {} fluid particles, {} bullets, {} bodies, {}", scene.fluidParticles(), scene.bulletCount(),
+                      scene.world.bodies.size(), run::bytesInWords(verdict.cost.bytes));
+  return text + fmt::format(", about {:.2g} sub-steps for {} s", verdict.cost.substeps, scene.duration);
+}
+
+nlohmann::json report(const Verdict& verdict) {
+  nlohmann::json out{{"file", verdict.file}, {"ok", verdict.errors.empty()}, {"errors", verdict.errorDetails}};
+  out["warnings"] = nlohmann::json::array();
+  if (!verdict.scene) return out;
+  const Scene& scene = *verdict.scene;
+  for (const Warning& warning : scene.warnings)
+    out["warnings"].push_back({{"line", warning.place.line},
+                               {"column", warning.place.column},
+                               {"key", warning.key},
+                               {"message", warning.line()}});
+  out["notes"] = scene.notes;
+  out["title"] = scene.title;
+  out["scene_sha256"] = scene.sha256;
+  out["duration"] = scene.duration;
+  out["fluid_particles"] = scene.fluidParticles();
+  out["bullets"] = scene.bulletCount();
+  out["bodies"] = scene.world.bodies.size();
+  out["memory_bytes"] = static_cast<std::uint64_t>(verdict.cost.bytes);
+  out["estimated_substeps"] = verdict.cost.substeps;
+  return out;
+}
+
+void printProblems(const Verdict& verdict) {
+  for (const std::string& error : verdict.errors) fmt::print(stderr, "{}\n", error);
+  if (!verdict.scene) return;
+  for (const Warning& warning : verdict.scene->warnings) fmt::print(stderr, "{}\n", warning.line());
+  for (const std::string& note : verdict.scene->notes) fmt::print(stderr, "{}: note: {}\n", verdict.file, note);
+}
+
+}  // namespace
+
+int checkCommand(const std::vector<std::string>& files, bool strict, bool json) {
+  bool wrong = false;
+  nlohmann::json reports = nlohmann::json::array();
+  for (const std::string& file : files) {
+    const Verdict verdict = judgeFile(file);
+    const bool warned = verdict.scene && !verdict.scene->warnings.empty();
+    wrong = wrong || !verdict.errors.empty() || (strict && warned);
+    printProblems(verdict);
+    if (json) {
+      reports.push_back(report(verdict));
+    } else {
+      fmt::print("{}: {}\n", file, sentence(verdict));
+    }
+  }
+  // File names may hold any bytes; JSON may not.
+  if (json) fmt::print("{}\n", reports.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  std::fflush(stdout);
+  return wrong ? 2 : 0;
+}
+
+}  // namespace froude::scene

@@ -1,0 +1,67 @@
+// A scene in the making: what the readers of its sections hand to each other. Internal to this folder.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/reader.h"
+#include "scene/scene.h"
+
+namespace froude::scene {
+
+/// A block of particles that has been read but not filled.
+struct BlockDraft {
+  std::shared_ptr<const Polygon> shape;
+  std::array<Expression, 2> velocity;
+  bool cut = true;
+  std::size_t count = 0;                   // bullets
+  Place place, velocityPlace, countPlace;  // of the shape and these keys
+  std::string path;                        // "fluid.block.0"
+};
+
+struct Draft {
+  Scene scene;
+  std::vector<BlockDraft> fluidBlocks, bulletBlocks;
+  std::vector<Place> bodyPlaces;       // of each body (copies share one), for warnings
+  std::vector<std::string> bodyPaths;  // "body.gate"
+  std::vector<Place> emitterPlaces;
+  Place timeStepPlace;
+  std::optional<Place> spacingPlace;                  // empty: the default
+  bool fluidEmitted = false, bulletsEmitted = false;  // by some emitter
+
+  void warn(const Place& place, const std::string& key, const std::string& text) {
+    scene.warnings.push_back({place, key, text});
+  }
+};
+
+/// A shape under the key `key` of `parent`: polygon with holes, box or regular. Written down as a polygon. Repairs
+/// become notes.
+std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft);
+/// The node that reads back as this polygon.
+Node shapeNode(const Polygon& polygon);
+
+// Each reads its part of the root, in this order (emitters decide with the blocks whether there is a fluid, gauges name
+// bodies), and leaves it in the root's resolved table.
+void readHeader(TableReader& root, Draft& draft);
+void readDomain(TableReader& root, Draft& draft);
+void readEmitters(TableReader& root, Draft& draft);
+void readSinks(TableReader& root, Draft& draft);
+void readBodies(TableReader& root, Draft& draft);
+void readBullets(TableReader& root, Draft& draft);
+void readFluid(TableReader& root, Draft& draft);  // with [model]
+void readOutput(TableReader& root, Draft& draft);
+void readGauges(TableReader& root, Draft& draft);
+
+/// Refuses a scene whose particles need more memory than the machine has; nothing has been placed yet.
+void checkMemory(const Draft& draft);
+/// Places the particles of all blocks outside bodies, walls and each other.
+void seed(Draft& draft);
+/// Looks for what runs but is probably not meant.
+void judge(Draft& draft);
+
+/// Particles that the blocks will have at most, by area.
+double expectedFluid(const Draft& draft);
+double expectedBullets(const Draft& draft);
+
+}  // namespace froude::scene

@@ -1,0 +1,71 @@
+#include "scene/estimate.h"
+
+#include <froude/particles/pool.h>
+#include <froude/solver/fluid/fluid_model.h>
+
+#include <algorithm>
+
+namespace froude::scene {
+
+namespace {
+
+double gravityScale(const WorldDef& world) {
+  if (!world.gravityField) return world.gravity.norm();
+  const Vec2 g = world.gravityField(world.domain.box.center(), 0.0);
+  return g.allFinite() ? g.norm() : 0.0;
+}
+
+/// Calls visit(position, velocity) for all that starts or is emitted.
+template <typename Visit>
+void forEachStart(const Scene& scene, bool bulletsToo, Visit&& visit) {
+  for (const auto* blocks : {&scene.fluidBlocks, &scene.bulletBlocks}) {
+    if (blocks == &scene.bulletBlocks && !bulletsToo) continue;
+    for (const SeededBlock& block : *blocks)
+      for (std::size_t i = 0; i < block.positions.size(); ++i) visit(block.positions[i], block.velocities[i]);
+  }
+  for (const EmitterDef& emitter : scene.world.emitters) {
+    if (emitter.kind == EmitterDef::Kind::Bullet && !bulletsToo) continue;
+    const Vec2 velocity = emitter.speed * leftNormal(emitter.to - emitter.from).normalized();
+    visit(emitter.from, velocity);
+    visit(emitter.to, velocity);
+  }
+}
+
+}  // namespace
+
+double expectedSpeed(const Scene& scene, bool bulletsToo) {
+  const WorldDef& world = scene.world;
+  const double gravity = gravityScale(world);
+  const Vec2 down = world.gravityField || gravity == 0.0 ? Vec2(0.0, 0.0) : Vec2(world.gravity / gravity);
+  const Box& box = world.domain.box;
+  const double floor = std::max(down.x() * box.min.x(), down.x() * box.max.x()) +
+                       std::max(down.y() * box.min.y(), down.y() * box.max.y());
+  double start = 0.0, height = world.gravityField ? box.size().norm() : 0.0;  // a field may pull anywhere
+  forEachStart(scene, bulletsToo, [&](const Vec2& position, const Vec2& velocity) {
+    start = std::max(start, velocity.squaredNorm());
+    height = std::max(height, floor - down.dot(position));
+  });
+  return std::sqrt(start + 2.0 * gravity * height);
+}
+
+Estimate estimate(const Scene& scene) {
+  const WorldDef& world = scene.world;
+  const double gravity = gravityScale(world);
+  Estimate result;
+  result.speed = expectedSpeed(scene, true);
+  for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
+  result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
+  result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount()));
+  StepBound bound;
+  if (world.fluid) {
+    ParticlePool pool(PoolSettings{});
+    bound = makeFluidModel(*world.fluid, world.domain, pool)->stepBound(expectedSpeed(scene, false), gravity);
+  }
+  if (world.timeStep) bound = {*world.timeStep, StepLimit::Literal};
+  result.substep = std::min(bound.dt, scene.duration);
+  result.limit = bound.limit;
+  result.substeps = std::ceil(scene.duration / result.substep);
+  return result;
+}
+
+}  // namespace froude::scene

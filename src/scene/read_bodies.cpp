@@ -1,0 +1,189 @@
+// [[body]]: polygons, where they stand and how they move.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "scene/draft.h"
+
+namespace froude::scene {
+
+namespace {
+
+constexpr double kDegrees = kPi / 180.0;
+constexpr std::int64_t kMostCopies = 1000000;
+
+/// [A-Za-z_][A-Za-z0-9_-]*, and dots, which copies have.
+bool goodName(const std::string& name) {
+  if (name.empty() || !(std::isalpha(static_cast<unsigned char>(name[0])) || name[0] == '_')) return false;
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  });
+}
+
+TimeFunction inTime(const Expression& expression) {
+  return [expression](double t) { return expression.evaluate(0.0, 0.0, t); };
+}
+
+void checkFinite(const TableReader& piece, const std::string& key, const Expression& expression, double until) {
+  for (const double t : {0.0, until})
+    if (!std::isfinite(expression.evaluate(0.0, 0.0, t)))
+      piece.fail(key, fmt::format("is not finite at t = {} s, right is a finite value at all times", show(t)));
+}
+
+std::vector<ScriptPiece> readScript(TableReader& body) {
+  std::vector<ScriptPiece> script;
+  Node resolved = Node::array();
+  double last = 0.0;
+  for (TableReader& piece : body.tables("script", {"until", "velocity", "spin"})) {
+    ScriptPiece p;
+    p.until = piece.number("until", Range{last, 1e9, true, false});
+    const auto velocity = piece.expressions("velocity", "t", {0.0, 0.0});
+    const Expression spin = piece.expression("spin", "t", 0.0);
+    for (const Expression& component : velocity) checkFinite(piece, "velocity", component, p.until);
+    checkFinite(piece, "spin", spin, p.until);
+    p.velocityX = inTime(velocity[0]);
+    p.velocityY = inTime(velocity[1]);
+    p.spin = inTime(spin);
+    last = p.until;
+    script.push_back(std::move(p));
+    resolved.items.push_back(piece.resolved());
+  }
+  if (!script.empty()) body.resolved().set("script", std::move(resolved));
+  return script;
+}
+
+void readMotion(TableReader& body, BodyDef& def) {
+  const std::string motion = body.word("motion", {"fixed", "scripted"}, "fixed", {"free"});
+  def.motion = motion == "fixed" ? Motion::Fixed : Motion::Scripted;
+  if (body.has("hinge")) body.fail("hinge", "hinges are not in this version (they hold free bodies)");
+  def.velocity = body.vector("velocity", Vec2(0.0, 0.0));
+  def.spin = body.number("spin", Range::between(-1e6, 1e6), 0.0);
+  def.script = readScript(body);
+  const bool moves = def.velocity != Vec2(0.0, 0.0) || def.spin != 0.0;
+  if (def.motion == Motion::Fixed && moves)
+    body.fail(def.spin != 0.0 ? "spin" : "velocity", "a fixed body does not move, right is motion = \"scripted\"");
+  if (def.motion == Motion::Fixed && !def.script.empty())
+    body.fail("script", "a fixed body does not move, right is motion = \"scripted\"");
+  if (!def.script.empty() && moves)
+    body.fail(def.spin != 0.0 ? "spin" : "velocity", "stands beside a script, right is one of them");
+}
+
+void readSurface(TableReader& body, BodyDef& def) {
+  def.density = body.number("density", Range::positive(1e12), 1000.0);
+  def.friction = body.number("friction", Range::notNegative(1e3), 0.3);
+  def.restitution = body.number("restitution", Range::between(0.0, 1.0), 0.1);
+  if (body.has("slip"))
+    def.slip = body.word("slip", {"free", "no"}, std::nullopt) == "free" ? Slip::Free : Slip::NoSlip;
+  def.surfaceVelocity = body.number("surface_velocity", Range::between(-1e6, 1e6), 0.0);
+  constexpr std::int64_t kAll = 0xFFFFFFFF;
+  def.group = static_cast<std::uint32_t>(body.integer("group", 0, kAll, 1));
+  def.collidesWith = static_cast<std::uint32_t>(body.integer("collides_with", 0, kAll, kAll));
+}
+
+/// How copies are laid out: count[i] steps along step[i], first index fastest.
+struct Repeat {
+  std::array<std::int64_t, 2> count{1, 1};
+  std::array<Vec2, 2> step{Vec2(0, 0), Vec2(0, 0)};
+  double turn = 0.0;  // [degrees] each
+};
+
+std::optional<Repeat> readRepeat(TableReader& body) {
+  std::optional<TableReader> table = body.table("repeat", {"count", "step", "turn"});
+  if (!table) return std::nullopt;
+  Repeat repeat;
+  const Node& count = table->need("count", "one or two integers, [nx, ny]");
+  const std::size_t n = count.items.size();
+  if (count.kind != Node::Kind::Array || n < 1 || n > 2)
+    table->fail("count", "right are one or two integers, [nx, ny]");
+  for (std::size_t i = 0; i < n; ++i) {
+    const Node& item = count.items[i];
+    if (item.kind != Node::Kind::Integer || item.integer < 1 || item.integer > kMostCopies)
+      table->fail(item, "count", fmt::format("right are integers from 1 to {}", kMostCopies));
+    repeat.count[i] = item.integer;
+  }
+  if (repeat.count[0] * repeat.count[1] > kMostCopies)
+    table->fail("count", fmt::format("asks for {} copies, right are at most {}", repeat.count[0] * repeat.count[1],
+                                     kMostCopies));
+  const Node& step = table->need("step", "a vector for each count, [[dx, dy], [dx, dy]]");
+  if (step.kind != Node::Kind::Array || step.items.size() != n)
+    table->fail("step", fmt::format("right are as many vectors as counts, {} of the form [dx, dy]", n));
+  for (std::size_t i = 0; i < n; ++i) {
+    Node pair;  // a table with one key, so that the vector is checked like any other
+    pair.set("step", step.items[i]);
+    TableReader reader(table->file(), pair, table->path(), {"step"});
+    repeat.step[i] = reader.vector("step");
+  }
+  repeat.turn = table->number("turn", Range::between(-1e6, 1e6), 0.0);
+  return repeat;
+}
+
+/// Adds one body, after checking its name and that it touches the domain.
+void addBody(TableReader& body, BodyDef def, double degrees, Draft& draft, std::set<std::string>& names,
+             Node& resolved) {
+  if (!names.insert(def.name).second)
+    body.fail("name", fmt::format("\"{}\" is taken by an earlier body, right is a name of its own", def.name));
+  const Box box = def.shape->transformed(Transform::of(def.position, def.angle)).bounds();
+  const Box& domain = draft.scene.world.domain.box;
+  if (!domain.overlaps(box)) {
+    const std::string which =
+        def.name == body.path().substr(body.path().find('.') + 1) ? "" : " (copy " + def.name + ")";
+    body.fail(
+        body.has("position") ? "position" : "shape",
+        fmt::format("the body{} lies wholly outside the domain: x {} … {}, y {} … {} against x {} … {}, y {} … {}",
+                    which, show(box.min.x()), show(box.max.x()), show(box.min.y()), show(box.max.y()),
+                    show(domain.min.x()), show(domain.max.x()), show(domain.min.y()), show(domain.max.y())));
+  }
+  Node copy = body.resolved();
+  copy.set("name", Node::of(def.name));
+  copy.set("position", Node::of(def.position));
+  copy.set("angle", Node::of(degrees));
+  resolved.items.push_back(std::move(copy));
+  draft.bodyPlaces.push_back(body.place("shape"));
+  draft.bodyPaths.push_back("body." + def.name);
+  draft.scene.world.bodies.push_back(std::move(def));
+}
+
+void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::string>& names, Node& resolved) {
+  BodyDef def;
+  def.name = body.text("name", "body" + std::to_string(index));
+  if (!goodName(def.name))
+    body.fail("name", fmt::format("is \"{}\", right are a letter or _, then letters, digits, _ and -", def.name));
+  def.shape = readShape(body, "shape", draft);
+  const Vec2 position = body.vector("position", Vec2(0.0, 0.0));
+  const double degrees = body.number("angle", Range::any(), 0.0);
+  if (body.word("origin", {"own", "centroid"}, "own") == "centroid") {
+    def.shape = std::make_shared<const Polygon>(def.shape->transformed({-def.shape->centroid(), {}}));
+    body.resolved().set("shape", shapeNode(*def.shape));
+    body.resolved().set("origin", Node::of("own"));
+  }
+  readMotion(body, def);
+  readSurface(body, def);
+  const std::optional<Repeat> repeat = readRepeat(body);
+  const Repeat r = repeat.value_or(Repeat{});
+  for (std::int64_t k = 0; k < r.count[0] * r.count[1]; ++k) {
+    BodyDef copy = def;
+    if (repeat) copy.name += "." + std::to_string(k);
+    copy.position =
+        position + static_cast<double>(k % r.count[0]) * r.step[0] + static_cast<double>(k / r.count[0]) * r.step[1];
+    const double turned = degrees + static_cast<double>(k) * r.turn;
+    if (std::abs(turned) > 1e9) body.fail("repeat", "turns the last copy by more than 1e9 degrees");
+    copy.angle = kDegrees * turned;
+    addBody(body, std::move(copy), turned, draft, names, resolved);
+  }
+}
+
+}  // namespace
+
+void readBodies(TableReader& root, Draft& draft) {
+  Node resolved = Node::array();
+  std::set<std::string> names;
+  std::size_t index = 0;
+  for (TableReader& body : root.tables(
+           "body", {"name", "shape", "position", "origin", "angle", "motion", "density", "velocity", "spin", "friction",
+                    "restitution", "slip", "surface_velocity", "group", "collides_with", "repeat", "script", "hinge"}))
+    readBody(body, index++, draft, names, resolved);
+  if (!resolved.items.empty()) root.resolved().set("body", std::move(resolved));
+}
+
+}  // namespace froude::scene

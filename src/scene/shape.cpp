@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include "scene/draft.h"
+
+namespace froude::scene {
+
+namespace {
+
+std::vector<Vec2> readRing(const TableReader& shape, const std::string& key, const Node& ring) {
+  static const std::string kRight = "right are vertices, [[x, y], [x, y], [x, y], …]";
+  if (ring.kind != Node::Kind::Array) shape.fail(ring, key, fmt::format("is {}, {}", kindName(ring.kind), kRight));
+  std::vector<Vec2> vertices;
+  vertices.reserve(ring.items.size());
+  for (const Node& item : ring.items) {
+    if (item.kind != Node::Kind::Array || item.items.size() != 2)
+      shape.fail(item, key, fmt::format("vertex {} is no pair of numbers, {}", vertices.size(), kRight));
+    double xy[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Node& number = item.items[i];
+      if (!number.isNumeric())
+        shape.fail(number, key, fmt::format("vertex {} holds {}, {}", vertices.size(), kindName(number.kind), kRight));
+      xy[i] = number.kind == Node::Kind::Integer ? static_cast<double>(number.integer) : number.number;
+      if (!(std::abs(xy[i]) <= 1e9))
+        shape.fail(
+            number, key,
+            fmt::format("vertex {} holds {}, right is a number from -1e9 at most 1e9", vertices.size(), show(xy[i])));
+    }
+    vertices.emplace_back(xy[0], xy[1]);
+  }
+  return vertices;
+}
+
+Polygon readPolygon(TableReader& shape, std::vector<std::string>& notes) {
+  std::vector<Vec2> outer = readRing(shape, "polygon", *shape.find("polygon"));
+  std::vector<std::vector<Vec2>> holes;
+  if (const Node* node = shape.find("holes")) {
+    if (node->kind != Node::Kind::Array)
+      shape.fail("holes",
+                 fmt::format("is {}, right is a list of holes, each a list of vertices", kindName(node->kind)));
+    for (const Node& ring : node->items) holes.push_back(readRing(shape, "holes", ring));
+  }
+  return Polygon::make(std::move(outer), std::move(holes), &notes);
+}
+
+/// The one of `keys` that the shape has.
+std::string kindOf(const TableReader& shape, const std::vector<std::string>& keys) {
+  std::string found;
+  for (const std::string& key : keys) {
+    if (!shape.has(key)) continue;
+    if (!found.empty()) shape.fail(key, fmt::format("a second kind of shape besides {}, one is right", found));
+    found = key;
+  }
+  if (found.empty())
+    throw SceneError(
+        shape.place(), shape.path(),
+        fmt::format("names no shape, right is one of {}, for example {{ box = [0, 0, 1, 1] }}", choice(keys)));
+  return found;
+}
+
+Node ringNode(const Polygon& polygon, std::size_t ring) {
+  Node vertices = Node::array();
+  for (std::uint32_t i = polygon.ringStarts()[ring]; i < polygon.ringStarts()[ring + 1]; ++i)
+    vertices.items.push_back(Node::of(polygon.vertices()[i]));
+  return vertices;
+}
+
+}  // namespace
+
+Node shapeNode(const Polygon& polygon) {
+  Node holes = Node::array();
+  for (std::size_t ring = 1; ring + 1 < polygon.ringStarts().size(); ++ring)
+    holes.items.push_back(ringNode(polygon, ring));
+  Node shape;
+  shape.set("polygon", ringNode(polygon, 0));
+  shape.set("holes", std::move(holes));
+  return shape;
+}
+
+std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft) {
+  static const std::vector<std::string> kKinds{"polygon", "box", "regular", "svg"};
+  parent.need(key, "for example { box = [0, 0, 1, 1] }");
+  TableReader shape = *parent.table(key, {"polygon", "holes", "box", "regular", "svg"});
+  const std::string kind = kindOf(shape, kKinds);
+  if (kind == "svg") shape.fail("svg", "SVG drawings are not in this version; this build has: polygon, box, regular");
+  if (shape.has("holes") && kind != "polygon") shape.fail("holes", "holes belong to a polygon, not to a " + kind);
+  std::vector<std::string> notes;
+  std::shared_ptr<const Polygon> polygon;
+  try {
+    if (kind == "polygon") {
+      polygon = std::make_shared<const Polygon>(readPolygon(shape, notes));
+    } else if (kind == "box") {
+      polygon = std::make_shared<const Polygon>(Polygon::box(shape.box("box")));
+    } else {
+      TableReader regular = *shape.table("regular", {"sides", "radius"});
+      const auto sides = static_cast<int>(regular.integer("sides", 3, 100000));
+      polygon = std::make_shared<const Polygon>(Polygon::regular(sides, regular.number("radius", Range::positive())));
+    }
+  } catch (const PolygonError& error) {
+    shape.fail(kind, std::string(error.what()));
+  }
+  for (const std::string& note : notes) draft.scene.notes.push_back(shape.path() + ": " + note);
+  parent.resolved().set(key, shapeNode(*polygon));
+  return polygon;
+}
+
+}  // namespace froude::scene
