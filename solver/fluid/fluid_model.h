@@ -1,0 +1,39 @@
+// The one interface of all fluid methods.
+#pragma once
+
+#include <memory>
+
+#include <froude/particles/pool.h>
+#include <froude/solver/step_context.h>
+
+namespace froude {
+
+/// A bound on the sub-step and its name.
+struct StepBound {
+  double dt = kInfinity;  // [s]
+  StepLimit limit = StepLimit::Requested;
+  void tighten(double other, StepLimit why) {
+    if (other < dt) *this = {other, why};
+  }
+};
+
+/// Moves the fluid particles of a pool. Silent: it neither prints nor throws inside a step.
+class FluidModel {
+ public:
+  virtual ~FluidModel() = default;
+
+  /// Reach of a particle [m].
+  virtual double supportRadius() const = 0;
+  /// Mass of a particle [kg/m].
+  virtual double particleMass() const = 0;
+  /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over the fluid.
+  virtual StepBound stepBound(double maxSpeed, double gravity) const = 0;
+  /// One sub-step: velocities and positions to the end of it. The pool comes out sorted by cell.
+  virtual void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) = 0;
+  virtual std::size_t memoryBytes() const = 0;
+};
+
+/// Makes the model of that name and adds its columns to the pool. Throws Error for an unknown name.
+std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
+
+}  // namespace froude

@@ -1,0 +1,111 @@
+#include <froude/solver/fluid/kernel.h>
+#include <froude/solver/fluid/lattice.h>
+#include <froude/solver/fluid/pair_loops.h>
+
+namespace froude {
+namespace {
+
+constexpr float kUnit = 1.0f / static_cast<float>(lattice::kUnitsPerSpacing);
+
+// pair(j, dx, dy, m): each visible candidate inside the support of particle i, itself included; m = 1 − q²/4 > 0.
+template <typename Pair>
+void forEachPair(const PairFrame& frame, std::uint32_t cell, std::uint32_t i, Pair&& pair) {
+  std::int32_t word = frame.hidden.offset != nullptr ? frame.hidden.offset[i] : -1;
+  frame.grid->forEachRun(cell, [&](const CellRun& run) {
+    const std::int32_t shiftX = run.shiftX > 0.0 ? frame.periodX : run.shiftX < 0.0 ? -frame.periodX : 0;
+    const std::int32_t shiftY = run.shiftY > 0.0 ? frame.periodY : run.shiftY < 0.0 ? -frame.periodY : 0;
+    const std::int32_t xi = lattice::difference(frame.x[i], shiftX);
+    const std::int32_t yi = lattice::difference(frame.y[i], shiftY);
+    for (std::uint32_t j = run.begin; j < run.end; ++j) {
+      if (word >= 0) {
+        const std::uint32_t k = j - run.begin;
+        if ((frame.hidden.words[static_cast<std::uint32_t>(word) + k / 64] >> (k % 64) & 1) == 0) continue;
+      }
+      const float dx = kUnit * static_cast<float>(lattice::difference(xi, frame.x[j]));
+      const float dy = kUnit * static_cast<float>(lattice::difference(yi, frame.y[j]));
+      const float m = 1.0f - 0.25f * (dx * dx + dy * dy);
+      if (m > 0.0f) pair(j, dx, dy, m);
+    }
+    if (word >= 0) word += static_cast<std::int32_t>((run.end - run.begin + 63) / 64);
+  });
+}
+
+template <typename Particle>
+void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end, Particle&& particle) {
+  const std::span<const std::uint32_t> start = frame.grid->cellStart();
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::uint32_t cell = frame.cells[c];
+    for (std::uint32_t i = start[cell]; i < start[cell + 1]; ++i) particle(cell, i);
+  }
+}
+
+constexpr auto kNorm = static_cast<float>(kernel::kNorm);
+
+void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sum = 0.0f, sx = 0.0f, sy = 0.0f, squares = 0.0f;
+    forEachPair(frame, cell, i, [&](std::uint32_t, float dx, float dy, float m) {
+      sum += m * m * (m * m);
+      const float f = m * m * m;
+      sx += f * dx;
+      sy += f * dy;
+      squares += f * f * (dx * dx + dy * dy);
+    });
+    float wall = 0.0f, gx = 0.0f, gy = 0.0f;
+    if (loop.lambda != nullptr) {
+      gx = loop.wallX[i];
+      gy = loop.wallY[i];
+      wall = loop.lambda[i] + gx * loop.shiftX[i] + gy * loop.shiftY[i];
+    }
+    loop.density[i] = kNorm * sum + wall;
+    if (loop.diagonal != nullptr) {
+      const float px = -2.0f * kNorm * sx, py = -2.0f * kNorm * sy;
+      loop.diagonal[i] = (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) +
+                         4.0f * kNorm * kNorm * squares;
+    }
+  });
+}
+
+void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sx = 0.0f, sy = 0.0f;
+    const float own = loop.pressure[i];
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
+      const float f = (own + loop.pressure[j]) * (m * m * m);
+      sx += f * dx;
+      sy += f * dy;
+    });
+    float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
+    if (loop.wallX != nullptr) {
+      moveX -= 2.0f * own * loop.wallX[i];
+      moveY -= 2.0f * own * loop.wallY[i];
+    }
+    loop.shiftX[i] += moveX;
+    loop.shiftY[i] += moveY;
+    loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(moveX / kUnit)));
+    loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(moveY / kUnit)));
+  });
+}
+
+void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sx = 0.0f, sy = 0.0f;
+    const float vx = loop.vx[i], vy = loop.vy[i];
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float, float, float m) {
+      const float weight = kNorm * (m * m * m) * (loop.a * m + 2.0f * loop.b);
+      sx += weight * (loop.vx[j] - vx);
+      sy += weight * (loop.vy[j] - vy);
+    });
+    loop.changeX[i] = sx;
+    loop.changeY[i] = sy;
+  });
+}
+
+}  // namespace
+
+const PairLoops& scalarPairLoops() {
+  static constexpr PairLoops kLoops{density, displace, viscosity};
+  return kLoops;
+}
+
+}  // namespace froude

@@ -1,0 +1,314 @@
+#include <froude/solver/fluid/pbf.h>
+
+#include <froude/base/parallel.h>
+#include <froude/solver/fluid/fluid_cells.h>
+#include <froude/solver/fluid/kernel.h>
+#include <froude/solver/fluid/lattice.h>
+
+namespace froude {
+namespace {
+
+// Defaults, chosen by docs/decisions/solver-pbf-sweeps.md.
+constexpr double kCourant = 0.25;        // of the support radius a sub-step
+constexpr int kSweeps = 5;
+constexpr double kRelaxation = 0.6;      // of a Jacobi sweep
+constexpr float kSmallestDiagonal = 0.05f;  // a particle with no neighbours has none
+constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
+constexpr float kSmoothing = 0.01f;      // XSPH, the paper's c (eq. 17)
+constexpr float kForgetSteps = 20.0f;    // sub-steps over which an over-dense start is let go
+constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
+
+}  // namespace
+
+Pbf::Pbf(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
+    : def_(def),
+      domain_(domain),
+      dx_(def.spacing),
+      sweeps_(def.sweeps > 0 ? def.sweeps : kSweeps),
+      courant_(def.courant > 0.0 ? def.courant : kCourant),
+      pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
+      density_(pool.addColumn<float>("density", ColumnKind::State)),
+      allowance_(pool.addColumn<float>("allowance", ColumnKind::State)),
+      walls_(def.spacing, {def.group, def.collidesWith}) {}
+
+double Pbf::supportRadius() const { return kernel::kSupport * dx_; }
+double Pbf::particleMass() const { return def_.density * dx_ * dx_; }
+double Pbf::pressureUnit(double dt) const { return dt * dt / (dx_ * dx_); }
+
+StepBound Pbf::stepBound(double maxSpeed, double gravity) const {
+  StepBound bound;
+  const double support = supportRadius();
+  if (maxSpeed > 0.0) bound.tighten(courant_ * support / maxSpeed, StepLimit::Courant);
+  if (gravity > 0.0) bound.tighten(0.25 * std::sqrt(support / gravity), StepLimit::Acceleration);
+  if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
+  return bound;
+}
+
+void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
+  if (pool.empty()) return;
+  resizeScratch(pool.size());
+  predict(context, pool, impulses, stats);        // lines 1–4
+  sortByCell(context, pool);                      // lines 5–7
+  meetWalls(context);
+  warmStart(context, pool);
+  solveDensity(context, pool, stats);             // lines 8–19
+  finishPositions(context, pool, impulses, stats);  // lines 20–21, 23
+  smoothVelocities(context, pool);                // line 22
+}
+
+void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const DiscContact point{0.0, 0.0, 0.0, filter(), true};
+  const double dt = context.dt;
+  contacts_.begin(pool.size());
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec2 at(x[i], y[i]);
+      const Vec2 v = Vec2(vx[i], vy[i]) + dt * context.gravity.at(at, context.time);
+      Vec2 to = at + dt * v;
+      const double travel = (to - at).norm();
+      if (context.obstacles.clearance(at) <= travel && context.obstacles.freeDistance(at, point.filter) <= travel) {
+        PathResult path;
+        followPath(context.obstacles, at, v, dt, point, path);
+        contacts_.addMean(i, path, at, v, dt);
+        to = path.x;
+      }
+      // Until the positions say what the velocity is, it carries the prediction through the sort.
+      vx[i] = (to.x() - x[i]) / dt;
+      vy[i] = (to.y() - y[i]) / dt;
+      predictedX_[i] = to.x();
+      predictedY_[i] = to.y();
+    }
+  });
+  stats.gravityImpulse += context.gravity.isConstant()
+                              ? Vec2(particleMass() * static_cast<double>(pool.size()) * dt * context.gravity.constant())
+                              : Vec2(0.0, 0.0);
+  contacts_.book(particleMass(), impulses);
+}
+
+void Pbf::sortByCell(const StepContext& context, ParticlePool& pool) {
+  const std::size_t n = pool.size();
+  wrapPeriodic(pool);
+  grid_.build({predictedX_.data(), n}, {predictedY_.data(), n},
+              fluidFrame(domain_, {predictedX_.data(), n}, {predictedY_.data(), n}, kCellSlack * supportRadius()));
+  if (!grid_.sorted()) pool.permute(grid_.order());
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      predictedX_[i] = x[i] + context.dt * vx[i];
+      predictedY_[i] = y[i] + context.dt * vy[i];
+      latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
+      latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
+      shiftX_[i] = shiftY_[i] = 0.0f;
+    }
+  });
+  findOccupiedCells(grid_, occupied_);
+}
+
+void Pbf::meetWalls(const StepContext& context) {
+  const std::size_t n = grid_.size();
+  walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
+}
+
+PairFrame Pbf::frame() const {
+  const Vec2 period = domain_.box.size() / dx_;
+  return {&grid_,
+          occupied_,
+          latticeX_.data(),
+          latticeY_.data(),
+          domain_.periodicX ? lattice::coordinate(period.x()) : 0,
+          domain_.periodicY ? lattice::coordinate(period.y()) : 0,
+          walls_.hidden()};
+}
+
+void Pbf::runDensity(const StepContext& context, float* density, float* diagonal) {
+  const PairFrame pairs = frame();
+  const bool any = walls_.any();
+  const DensityLoop loop{any ? walls_.lambda() : nullptr, walls_.gradientX(), walls_.gradientY(),
+                         shiftX_.data(), shiftY_.data(), density, diagonal};
+  const PairLoops& loops = pairLoops(context.simd);
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.density(pairs, loop, begin, end); });
+}
+
+void Pbf::runDisplacement(const StepContext& context, const float* pressure) {
+  const PairFrame pairs = frame();
+  const DisplacementLoop loop{pressure, walls_.any() ? walls_.gradientX() : nullptr, walls_.gradientY(),
+                              shiftX_.data(), shiftY_.data(), nextX_.data(), nextY_.data()};
+  const PairLoops& loops = pairLoops(context.simd);
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
+  latticeX_.swap(nextX_);
+  latticeY_.swap(nextY_);
+}
+
+void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
+  const auto pressure = pool.column(pressure_);
+  const auto unit = static_cast<float>(pressureUnit(context.dt));
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) kappa_[i] = unit * pressure[i];
+  });
+  runDisplacement(context, kappa_.data());
+}
+
+void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
+  const auto density = pool.column(density_), allowance = pool.column(allowance_), pressure = pool.column(pressure_);
+  const std::size_t n = pool.size();
+  const float forget = std::exp(-1.0f / kForgetSteps);
+  for (int sweep = 0;; ++sweep) {
+    const bool first = sweep == 0;
+    if (first) {  // a density of 0 marks a particle that is new
+      parallelFor(n, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) allowance[i] = density[i] == 0.0f ? -1.0f : forget * allowance[i];
+      });
+    }
+    runDensity(context, density.data(), first ? diagonal_.data() : nullptr);
+    if (sweep == sweeps_) break;
+    parallelFor(n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (allowance[i] < 0.0f) allowance[i] = std::max(0.0f, density[i] - 1.0f);
+        const float excess = density[i] - 1.0f - allowance[i];
+        const float next = std::max(0.0f, kappa_[i] + static_cast<float>(kRelaxation) * excess /
+                                                          std::max(diagonal_[i], kSmallestDiagonal));
+        change_[i] = next - kappa_[i];
+        kappa_[i] = next;
+      }
+    });
+    runDisplacement(context, change_.data());
+  }
+  stats.sweeps = sweeps_;
+  const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
+  stats.meanCompression = parallelSum(n, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      pressure[i] = unit * kappa_[i];
+      sum += std::max(0.0f, density[i] - 1.0f);
+    }
+    return sum;
+  }) / static_cast<double>(n);
+  stats.maxCompression = parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
+    float most = 0.0f;
+    for (std::size_t i = begin; i < end; ++i) most = std::isnan(density[i]) ? density[i] : std::max(most, density[i] - 1.0f);
+    return static_cast<double>(most);
+  });
+}
+
+void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const DiscContact point{0.0, 0.0, 0.0, filter(), true};
+  const double dt = context.dt;
+  contacts_.begin(pool.size());
+  crushed_.assign(blockCount(pool.size()), 0);
+  leaks_.assign(blockCount(pool.size()), 0);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec2 at(x[i], y[i]);
+      Vec2 to(predictedX_[i] + dx_ * static_cast<double>(shiftX_[i]), predictedY_[i] + dx_ * static_cast<double>(shiftY_[i]));
+      const double travel = (to - at).norm();
+      if (context.obstacles.clearance(at) <= travel && context.obstacles.freeDistance(at, point.filter) <= travel) {
+        PathResult path;
+        const Vec2 v = (to - at) / dt;
+        followPath(context.obstacles, at, v, dt, point, path);
+        if (path.contacts > 0) {
+          contacts_.addMean(i, path, at, v, dt);
+          to = path.x;
+        }
+        if (context.obstacles.distance(to, point.filter).distance < 0.0) {
+          // Only what is squeezed can be here: it has no free place.
+          ++(path.crushed ? crushed_ : leaks_)[begin / kBlockSize];
+          pool.kill(static_cast<std::uint32_t>(i));
+        }
+      }
+      vx[i] = (to.x() - at.x()) / dt;
+      vy[i] = (to.y() - at.y()) / dt;
+      x[i] = to.x();
+      y[i] = to.y();
+    }
+  });
+  stats.wallHits += contacts_.size();
+  if (!context.gravity.isConstant()) addFieldGravity(context, pool, stats);
+  for (const std::uint32_t n : crushed_) stats.crushed += n;
+  for (const std::uint32_t n : leaks_) stats.leaks += n;
+  contacts_.book(particleMass(), impulses);
+  // The pressure on the walls: each sweep moved its particle by −2κg.
+  const double impulse = 2.0 * particleMass() * dx_ / dt;
+  walls_.forEachLink([&](const WallLink& link) {
+    const double k = impulse * static_cast<double>(kappa_[link.particle]);
+    const Vec2 at(x[link.particle], y[link.particle]);
+    impulses.add(link.owner, at, {k * static_cast<double>(link.gradientX), k * static_cast<double>(link.gradientY)},
+                 context.obstacles.velocityAt(link.owner, at));
+  });
+}
+
+// The impulse of the field was taken at the old positions; its work is by the midpoint rule along the path.
+void Pbf::addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const double mass = particleMass(), dt = context.dt;
+  auto sum = [&](auto&& term) {
+    return mass * dt * parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
+             double total = 0.0;
+             for (std::size_t i = begin; i < end; ++i) total += term(Vec2(x[i], y[i]), Vec2(vx[i], vy[i]));
+             return total;
+           });
+  };
+  const Gravity& g = context.gravity;
+  const double t = context.time;
+  stats.gravityImpulse.x() += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - dt * v, t).x(); });
+  stats.gravityImpulse.y() += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - dt * v, t).y(); });
+  stats.gravityWork += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - 0.5 * dt * v, t + 0.5 * dt).dot(v); });
+}
+
+void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
+  const auto vx = pool.vx(), vy = pool.vy();
+  const std::size_t n = pool.size();
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      velocityX_[i] = static_cast<float>(vx[i]);
+      velocityY_[i] = static_cast<float>(vy[i]);
+    }
+  });
+  const PairFrame pairs = frame();
+  const ViscosityLoop loop{velocityX_.data(), velocityY_.data(), kSmoothing,
+                           static_cast<float>(2.0 * def_.viscosity * context.dt / (dx_ * dx_)), smoothX_.data(),
+                           smoothY_.data()};
+  const PairLoops& loops = pairLoops(context.simd);
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.viscosity(pairs, loop, begin, end); });
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      vx[i] += static_cast<double>(smoothX_[i]);
+      vy[i] += static_cast<double>(smoothY_[i]);
+    }
+  });
+}
+
+void Pbf::wrapPeriodic(ParticlePool& pool) {
+  if (!domain_.periodicX && !domain_.periodicY) return;
+  const auto x = pool.x(), y = pool.y();
+  // The whole path is moved by a period, so that velocity = displacement/dt stays true.
+  auto wrap = [](double& predicted, double& at, double low, double length) {
+    const double turns = std::floor((predicted - low) / length);
+    predicted -= turns * length;
+    at -= turns * length;
+  };
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (domain_.periodicX) wrap(predictedX_[i], x[i], domain_.box.min.x(), domain_.box.size().x());
+    if (domain_.periodicY) wrap(predictedY_[i], y[i], domain_.box.min.y(), domain_.box.size().y());
+  }
+}
+
+void Pbf::resizeScratch(std::size_t n) {
+  for (AlignedArray<double>* a : {&predictedX_, &predictedY_}) a->resize(n);
+  for (AlignedArray<std::int32_t>* a : {&latticeX_, &latticeY_, &nextX_, &nextY_}) a->resize(n);
+  for (AlignedArray<float>* a : {&shiftX_, &shiftY_, &kappa_, &change_, &diagonal_, &velocityX_, &velocityY_, &smoothX_,
+                                 &smoothY_}) {
+    a->resize(n);
+  }
+}
+
+std::size_t Pbf::memoryBytes() const {
+  return 2 * predictedX_.capacity() * sizeof(double) + 13 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
+         walls_.memoryBytes();
+}
+
+}  // namespace froude

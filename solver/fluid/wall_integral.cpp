@@ -1,0 +1,199 @@
+#include <froude/solver/fluid/wall_integral.h>
+
+#include <array>
+
+#include <froude/base/assert.h>
+#include <froude/solver/fluid/kernel.h>
+
+namespace froude {
+namespace {
+
+using kernel::kNorm;
+constexpr double kReach = kernel::kSupport;
+
+// Antiderivatives along the line of an edge at distance d from the origin; s is measured from the foot of the
+// perpendicular, M = 1 − d²/4, and r² = d² + s². With this kernel 1/2π − G(r) = (1 − r²/4)⁵/2π.
+struct LineIntegrals {
+  double kernel;  // ∫ (1 − r²/4)⁴ ds
+  double angle;   // ∫ (1 − r²/4)⁵ dθ, dθ = d·ds/r²
+};
+
+LineIntegrals lineIntegrals(double d, double s) {
+  const double u = s * s;
+  const double v = d * d;
+  const double m = 1.0 - 0.25 * v;
+  const double kernel =
+      s * (m * m * m * m + u * (-m * m * m / 3.0 + u * (3.0 * m * m / 40.0 + u * (-m / 112.0 + u / 2304.0))));
+  // (1 − r²/4)⁵/r² = 1/r² − 5/4 + 5r²/8 − 5r⁴/32 + 5r⁶/256 − r⁸/1024, each power of r² = v + u integrated over s.
+  const double i2 = s * (v + u / 3.0);
+  const double i4 = s * (v * v + u * (2.0 * v / 3.0 + u / 5.0));
+  const double i6 = s * (v * v * v + u * (v * v + u * (0.6 * v + u / 7.0)));
+  const double i8 = s * (v * v * v * v + u * (4.0 * v * v * v / 3.0 + u * (1.2 * v * v + u * (4.0 * v / 7.0 + u / 9.0))));
+  const double angle =
+      std::atan2(s, d) + d * (-1.25 * s + 0.625 * i2 - 0.15625 * i4 + (5.0 / 256.0) * i6 - i8 / 1024.0);
+  return {kernel, angle};
+}
+
+// ∫ (1 − r²/4)⁴ dr from r to the support radius.
+double radialIntegral(double r) {
+  auto primitive = [](double q) {
+    const double u = q * q;
+    return q * (1.0 + u * (-1.0 / 3.0 + u * (3.0 / 40.0 + u * (-1.0 / 112.0 + u / 2304.0))));
+  };
+  return r < kReach ? primitive(kReach) - primitive(r) : 0.0;
+}
+
+struct Wedge {
+  double lambda = 0.0;
+  Vec2 gradient{0.0, 0.0};
+};
+
+// One visible piece of a wall from p1 to p2, seen counter-clockwise from the origin (cross(p1, p2) > 0).
+Wedge integrateWedge(const Vec2& p1, const Vec2& p2) {
+  const Vec2 along = p2 - p1;
+  const double length = along.norm();
+  Wedge wedge;
+  if (length <= 0.0) return wedge;
+  const Vec2 t = along / length;
+  const Vec2 towards = rightNormal(t);  // from the origin to the wall: the way into the solid
+  const double d = std::max(towards.dot(p1), 1e-12);
+  if (d >= kReach) return wedge;
+  const double half = std::sqrt(kReach * kReach - d * d);
+  const double s1 = std::max(t.dot(p1), -half);
+  const double s2 = std::min(t.dot(p2), half);
+  if (s1 >= s2) return wedge;
+
+  const LineIntegrals from = lineIntegrals(d, s1);
+  const LineIntegrals to = lineIntegrals(d, s2);
+  wedge.lambda = (to.angle - from.angle) / (2.0 * kPi);
+  wedge.gradient = kNorm * (to.kernel - from.kernel) * towards;
+  // Shadow lines: only where the piece ends within the support radius.
+  const double r1 = p1.norm();
+  const double r2 = p2.norm();
+  if (r1 < kReach && r1 > 0.0) wedge.gradient -= kNorm * radialIntegral(r1) / r1 * rightNormal(p1);
+  if (r2 < kReach && r2 > 0.0) wedge.gradient -= kNorm * radialIntegral(r2) / r2 * leftNormal(p2);
+  return wedge;
+}
+
+struct Front {
+  Vec2 p1, p2;  // counter-clockwise as seen from the origin
+  int owner;
+};
+
+void addShare(std::span<WallShare> shares, std::size_t& count, int owner, const Wedge& wedge) {
+  std::size_t k = 0;
+  while (k < count && shares[k].owner != owner) ++k;
+  if (k == count) shares[count++] = {owner, 0.0, {0.0, 0.0}};
+  shares[k].lambda += wedge.lambda;
+  shares[k].gradient += wedge.gradient;
+}
+
+// Do the open angular ranges of two fronts overlap? Both are less than π wide.
+bool anglesOverlap(const Front& e, const Front& f) {
+  constexpr double kTouch = 1e-12;
+  auto strictlyInside = [](const Front& range, const Vec2& p) {
+    const double scale = p.norm();
+    return cross(range.p1, p) > kTouch * scale * range.p1.norm() && cross(p, range.p2) > kTouch * scale * range.p2.norm();
+  };
+  if (strictlyInside(e, f.p1) || strictlyInside(e, f.p2) || strictlyInside(f, e.p1) || strictlyInside(f, e.p2)) {
+    return true;
+  }
+  // Equal ranges: neither end lies strictly inside the other.
+  return strictlyInside(e, f.p1 / f.p1.norm() + f.p2 / f.p2.norm());
+}
+
+// Where the ray from the origin along u meets the line of the front; infinity if outside the front's range.
+double rayDistance(const Front& f, const Vec2& u) {
+  const Vec2 along = f.p2 - f.p1;
+  const double denominator = cross(u, along);
+  if (!(denominator > 0.0)) return kInfinity;
+  if (cross(f.p1, u) < 0.0 || cross(u, f.p2) < 0.0) return kInfinity;
+  return cross(f.p1, along) / denominator;
+}
+
+// Fronts that hide one another: between neighbouring end directions the nearest front is the visible one.
+std::size_t integrateHidden(std::span<const Front> fronts, std::span<WallShare> shares) {
+  std::array<double, 2 * kMaxWallEdges> angle;
+  std::size_t n = 0;
+  for (const Front& f : fronts) {
+    angle[n++] = std::atan2(f.p1.y(), f.p1.x());
+    angle[n++] = std::atan2(f.p2.y(), f.p2.x());
+  }
+  std::sort(angle.begin(), angle.begin() + static_cast<std::ptrdiff_t>(n));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double from = angle[i];
+    const double to = i + 1 < n ? angle[i + 1] : angle[0] + 2.0 * kPi;
+    if (to - from < 1e-13) continue;
+    const double mid = 0.5 * (from + to);
+    const Vec2 u(std::cos(mid), std::sin(mid));
+    const Front* nearest = nullptr;
+    double best = kInfinity;
+    for (const Front& f : fronts) {
+      const double r = rayDistance(f, u);
+      if (r < best) {
+        best = r;
+        nearest = &f;
+      }
+    }
+    if (nearest == nullptr) continue;
+    const Vec2 along = nearest->p2 - nearest->p1;
+    auto onFront = [&](double a) {
+      const Vec2 v(std::cos(a), std::sin(a));
+      return Vec2(v * (cross(nearest->p1, along) / cross(v, along)));
+    };
+    addShare(shares, count, nearest->owner, integrateWedge(onFront(from), onFront(to)));
+  }
+  return count;
+}
+
+constexpr std::size_t kTableSize = 512;
+
+struct Table {
+  std::array<HalfPlane, kTableSize + 1> entry;
+  Table() {
+    for (std::size_t i = 0; i <= kTableSize; ++i) {
+      const double d = kReach * static_cast<double>(i) / kTableSize;
+      const Wedge w = integrateWedge({3.0, std::max(d, 1e-12)}, {-3.0, std::max(d, 1e-12)});
+      entry[i] = {w.lambda, w.gradient.y()};
+    }
+  }
+};
+
+}  // namespace
+
+std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares) {
+  FROUDE_ASSERT(edges.size() <= kMaxWallEdges && shares.size() >= edges.size());
+  std::array<Front, kMaxWallEdges> fronts;
+  std::size_t n = 0;
+  for (const WallEdge& e : edges) {
+    if (cross(e.a, e.b) < 0.0) fronts[n++] = {e.b, e.a, e.owner};
+  }
+  bool hidden = false;
+  for (std::size_t i = 0; i < n && !hidden; ++i) {
+    for (std::size_t j = i + 1; j < n && !hidden; ++j) hidden = anglesOverlap(fronts[i], fronts[j]);
+  }
+  if (hidden) return integrateHidden({fronts.data(), n}, shares);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i) addShare(shares, count, fronts[i].owner, integrateWedge(fronts[i].p1, fronts[i].p2));
+  return count;
+}
+
+HalfPlane halfPlane(double distance) {
+  static const Table table;
+  const double x = std::abs(distance) * (kTableSize / kReach);
+  if (!(x < kTableSize)) return {distance > 0.0 ? 0.0 : 1.0, 0.0};
+  const auto i = static_cast<std::size_t>(x);
+  const double f = x - static_cast<double>(i);
+  const HalfPlane& a = table.entry[i];
+  const HalfPlane& b = table.entry[i + 1];
+  // Cubic Hermite for λ (its derivative is known exactly), linear for the slope's residual.
+  constexpr double kStep = kReach / kTableSize;
+  const double h00 = (1.0 + 2.0 * f) * (1.0 - f) * (1.0 - f), h10 = f * (1.0 - f) * (1.0 - f);
+  const double h01 = f * f * (3.0 - 2.0 * f), h11 = f * f * (f - 1.0);
+  const double lambda = h00 * a.lambda - h10 * kStep * a.slope + h01 * b.lambda - h11 * kStep * b.slope;
+  const double slope = a.slope + f * (b.slope - a.slope);
+  return {distance >= 0.0 ? lambda : 1.0 - lambda, slope};
+}
+
+}  // namespace froude

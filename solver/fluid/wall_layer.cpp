@@ -1,0 +1,113 @@
+#include <froude/solver/fluid/wall_layer.h>
+
+#include <array>
+
+#include <froude/base/parallel.h>
+#include <froude/solver/fluid/kernel.h>
+
+namespace froude {
+
+void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x,
+                      std::span<const double> y) {
+  const std::size_t n = x.size();
+  lambda_.resize(n);
+  gradientX_.resize(n);
+  gradientY_.resize(n);
+  offset_.resize(n);
+  used_ = blockCount(n);
+  if (blocks_.size() < used_) blocks_.resize(used_);
+  const double support = kernel::kSupport * spacing_;
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    Block& block = blocks_[begin / kBlockSize];
+    block.links.clear();
+    block.words.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      lambda_[i] = gradientX_[i] = gradientY_[i] = 0.0f;
+      offset_[i] = -1;
+      if (obstacles.clearance({x[i], y[i]}) < support) {
+        integrate(obstacles, grid, x, y, static_cast<std::uint32_t>(i), block);
+      }
+    }
+  });
+
+  // Each block's words go behind those of the blocks before it.
+  any_ = anyHidden_ = false;
+  std::size_t total = 0;
+  for (std::size_t b = 0; b < used_; ++b) {
+    any_ = any_ || !blocks_[b].links.empty();
+    total += blocks_[b].words.size();
+  }
+  if (total == 0) return;
+  anyHidden_ = true;
+  words_.resize(total);
+  std::size_t base = 0;
+  for (std::size_t b = 0; b < used_; ++b) {
+    const AlignedArray<std::uint64_t>& words = blocks_[b].words;
+    if (words.empty()) continue;
+    std::copy(words.begin(), words.end(), words_.data() + base);
+    for (std::size_t i = b * kBlockSize; i < std::min(n, (b + 1) * kBlockSize); ++i) {
+      if (offset_[i] >= 0) offset_[i] += static_cast<std::int32_t>(base);
+    }
+    base += words.size();
+  }
+}
+
+void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x,
+                          std::span<const double> y, std::uint32_t i, Block& block) {
+  std::array<WallEdge, kMaxWallEdges> buffer;
+  const std::size_t n =
+      obstacles.edgesNear({x[i], y[i]}, kernel::kSupport * spacing_, spacing_, filter_, {buffer.data(), buffer.size()});
+  if (n == 0) return;
+  const std::span<const WallEdge> edges(buffer.data(), n);
+  std::array<WallShare, kMaxWallEdges> shares;
+  const std::size_t owners = integrateWalls(edges, shares);
+  for (std::size_t k = 0; k < owners; ++k) {
+    const WallShare& share = shares[k];
+    lambda_[i] += static_cast<float>(share.lambda);
+    gradientX_[i] += static_cast<float>(share.gradient.x());
+    gradientY_[i] += static_cast<float>(share.gradient.y());
+    block.links.push_back({i, share.owner, static_cast<float>(share.gradient.x()), static_cast<float>(share.gradient.y())});
+  }
+  // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be.
+  bool facesAway = false;
+  for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
+  if (facesAway) findHidden(edges, grid, x, y, i, block);
+}
+
+void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
+                           std::span<const double> y, std::uint32_t i, Block& block) {
+  const std::size_t first = block.words.size();
+  bool found = false;
+  const double scale = 1.0 / spacing_;
+  // The cell in which the sort put it, not one computed again: the pair loops walk the same runs.
+  grid.forEachRun(grid.cells()[grid.order()[i]], [&](const CellRun& run) {
+    for (std::uint32_t begin = run.begin; begin < run.end; begin += 64) {
+      std::uint64_t visible = ~0ull;
+      for (std::uint32_t j = begin; j < std::min(run.end, begin + 64); ++j) {
+        const Vec2 p = Vec2(x[j] + run.shiftX - x[i], y[j] + run.shiftY - y[i]) * scale;
+        if (j == i || p.squaredNorm() >= kernel::kSupport * kernel::kSupport) continue;
+        for (const WallEdge& e : edges) {
+          if (!hidesPoint(e, p)) continue;
+          visible &= ~(1ull << (j - begin));
+          found = true;
+          break;
+        }
+      }
+      block.words.push_back(visible);
+    }
+  });
+  if (found) {
+    offset_[i] = static_cast<std::int32_t>(first);
+  } else {
+    block.words.resize(first);
+  }
+}
+
+std::size_t WallLayer::memoryBytes() const {
+  std::size_t bytes = (lambda_.capacity() + gradientX_.capacity() + gradientY_.capacity() + offset_.capacity()) * 4 +
+                      words_.capacity() * 8;
+  for (const Block& b : blocks_) bytes += b.links.capacity() * sizeof(WallLink) + b.words.capacity() * 8;
+  return bytes;
+}
+
+}  // namespace froude

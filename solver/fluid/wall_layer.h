@@ -1,0 +1,71 @@
+// Walls as the particles of one sub-step see them: λ, its gradient, to whom the force goes, and which pairs are hidden.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <froude/base/aligned.h>
+#include <froude/particles/cell_grid.h>
+#include <froude/solver/coupling/obstacles.h>
+#include <froude/solver/fluid/pair_loops.h>
+
+namespace froude {
+
+/// The part of a particle's wall gradient that belongs to one owner.
+struct WallLink {
+  std::uint32_t particle;
+  std::int32_t owner;        // body index, −1: the domain
+  float gradientX, gradientY;  // [1/dx]
+};
+
+/// Built once a sub-step at the predicted positions; memory is reused from step to step.
+class WallLayer {
+ public:
+  /// spacing dx [m] is the unit of λ's gradient; filter: of the fluid.
+  WallLayer(double spacing, CollisionFilter filter) : spacing_(spacing), filter_(filter) {}
+
+  /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a look-up
+  /// a particle, and the wall integral for those within the support radius of a wall.
+  void build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y);
+
+  /// Per particle; 0 away from walls.
+  const float* lambda() const { return lambda_.data(); }
+  const float* gradientX() const { return gradientX_.data(); }
+  const float* gradientY() const { return gradientY_.data(); }
+  /// False if no particle is near a wall: loops then skip λ altogether.
+  bool any() const { return any_; }
+  HiddenPairs hidden() const {
+    return anyHidden_ ? HiddenPairs{offset_.data(), words_.data()} : HiddenPairs{};
+  }
+  /// visit(const WallLink&) in increasing particle order.
+  template <typename Visit>
+  void forEachLink(Visit&& visit) const {
+    for (std::size_t b = 0; b < used_; ++b) {
+      for (const WallLink& link : blocks_[b].links) visit(link);
+    }
+  }
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Block {
+    AlignedArray<WallLink> links;
+    AlignedArray<std::uint64_t> words;
+  };
+  void integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y,
+                 std::uint32_t i, Block& block);
+  void findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
+                  std::span<const double> y, std::uint32_t i, Block& block);
+
+  double spacing_;
+  CollisionFilter filter_;
+  AlignedArray<float> lambda_, gradientX_, gradientY_;
+  AlignedArray<std::int32_t> offset_;
+  AlignedArray<std::uint64_t> words_;
+  std::vector<Block> blocks_;
+  std::size_t used_ = 0;
+  bool any_ = false;
+  bool anyHidden_ = false;
+};
+
+}  // namespace froude

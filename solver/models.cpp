@@ -1,0 +1,56 @@
+// The register of fluid methods: one entry a model.
+#include <array>
+
+#include <froude/base/error.h>
+#include <froude/solver/fluid/pbf.h>
+#include <froude/solver/model_card.h>
+#include <froude/solver/world.h>
+
+namespace froude {
+
+std::span<const ModelCard> modelCards() {
+  static const std::vector<ModelCard> kCards{
+      {"ballistic",
+       "Ballistic bullets",
+       "discs that fly, bounce and slide on polygons; no interaction among themselves",
+       "collisions between bullets, rotation of a bullet, drag",
+       {"sqrt(0.8 radius / g): a step's chord departs from the parabola by a tenth of the radius",
+        "0.5 rad of spin of a moving polygon"},
+       {"after 8 bounces in a sub-step a bullet rests at its last contact and moves with that polygon"},
+       {}},
+      {"pbf",
+       "Position based fluid",
+       "incompressible fluid with a free surface by density constraints, free-slip walls exact for polygons",
+       "negative pressure, surface tension, friction at walls; viscosity only as an explicit laminar term",
+       {"courant * support / v_max, courant = 0.25 unless set", "0.25 sqrt(support / g)", "0.125 dx^2 / viscosity",
+        "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+       {"a fixed number of sweeps a step: hit hard, a deep fluid is compressed by more than 1 % for some steps",
+        "pressure noise: of the order of a tenth of the dynamic pressure in violent flow",
+        "no tension: an accelerated stream breaks up into strands of particles"},
+       {"M. Macklin, M. Mueller: Position based fluids. ACM Trans. Graph. 32(4), 2013",
+        "J. Bender et al.: Volume maps. SIGGRAPH MIG 2019 (walls); M. Ferrand et al.: Int. J. Numer. Methods Fluids 71, "
+        "2013"}},
+  };
+  return kCards;
+}
+
+const ModelCard* findModelCard(std::string_view name) {
+  for (const ModelCard& card : modelCards()) {
+    if (card.name == name) return &card;
+  }
+  return nullptr;
+}
+
+std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool) {
+  if (def.model == "pbf") return std::make_unique<Pbf>(def, domain, pool);
+  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf");
+}
+
+std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
+  // Per particle, state columns twice (sorting), the undo copy, scratch and cells; measured, see docs/performance.md.
+  constexpr std::size_t kFluidBytes = 320, kBulletBytes = 170, kFieldBytes = 24 << 20;
+  (void)def;
+  return kFieldBytes + kFluidBytes * fluidParticles + kBulletBytes * bullets;
+}
+
+}  // namespace froude

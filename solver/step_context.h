@@ -1,0 +1,85 @@
+// What one sub-step is: the only holder of a time step. And what it reports.
+#pragma once
+
+#include <vector>
+
+#include <froude/base/simd.h>
+#include <froude/solver/coupling/obstacles.h>
+#include <froude/solver/definitions.h>
+#include <froude/solver/report.h>
+
+namespace froude {
+
+/// Gravity, constant or a field.
+class Gravity {
+ public:
+  Gravity(const Vec2& constant, VectorField field) : constant_(constant), field_(std::move(field)) {}
+  bool isConstant() const { return !field_; }
+  const Vec2& constant() const { return constant_; }
+  Vec2 at(const Vec2& x, double t) const { return field_ ? field_(x, t) : constant_; }
+
+ private:
+  Vec2 constant_;
+  VectorField field_;
+};
+
+/// Constant during a sub-step; handed to every stage.
+struct StepContext {
+  double time = 0.0;  // at the start [s]
+  double dt = 0.0;    // [s]
+  const Gravity& gravity;
+  const Obstacles& obstacles;
+  SimdTarget simd;
+};
+
+/// What particles gave to the bodies during a sub-step; index 0 is the domain, body i stands at i + 1.
+class ImpulseLedger {
+ public:
+  void reset(std::size_t bodies) {
+    entries_.assign(bodies + 1, {});
+    work_ = 0.0;
+  }
+  /// impulse [kg·m/s per metre of depth] on the owner (−1: the domain) at the point, where its surface moves at
+  /// `surfaceVelocity` [m/s].
+  void add(int owner, const Vec2& at, const Vec2& impulse, const Vec2& surfaceVelocity) {
+    Entry& e = entries_[static_cast<std::size_t>(owner + 1)];
+    e.impulse += impulse;
+    e.moment += cross(at, impulse);
+    work_ -= impulse.dot(surfaceVelocity);
+  }
+  /// Done by moving surfaces on particles [J/m].
+  double work() const { return work_; }
+  const Vec2& impulse(int owner) const { return entries_[static_cast<std::size_t>(owner + 1)].impulse; }
+  /// About the world's origin.
+  double moment(int owner) const { return entries_[static_cast<std::size_t>(owner + 1)].moment; }
+  Vec2 total() const {
+    Vec2 sum(0.0, 0.0);
+    for (const Entry& e : entries_) sum += e.impulse;
+    return sum;
+  }
+
+ private:
+  struct Entry {
+    Vec2 impulse{0.0, 0.0};
+    double moment = 0.0;
+  };
+  std::vector<Entry> entries_;
+  double work_ = 0.0;
+};
+
+/// Numbers of one sub-step of one model.
+struct StepStats {
+  Trouble trouble = Trouble::None;
+  double troubleValue = 0.0, troubleLimit = 0.0;
+  Vec2 troubleAt{0.0, 0.0};
+  double maxCompression = 0.0;   // largest ρ/ρ0 − 1, over-dense starts included
+  double meanCompression = 0.0;  // mean of max(0, ρ/ρ0 − 1)
+  double gravityWork = 0.0;      // of a gravity field; constant gravity is in the potential energy [J/m]
+  Vec2 gravityImpulse{0.0, 0.0}; // [kg/s]
+  int sweeps = 0;
+  std::uint64_t wallHits = 0;
+  std::uint64_t leaks = 0;
+  std::uint64_t crushed = 0;
+};
+
+}  // namespace froude

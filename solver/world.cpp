@@ -1,0 +1,209 @@
+#include <froude/solver/world.h>
+
+#include <array>
+
+#include <froude/base/parallel.h>
+#include <froude/solver/world_impl.h>
+
+namespace froude {
+namespace {
+
+std::unique_ptr<ParticlePool> makePool(const std::string& name) {
+  return std::make_unique<ParticlePool>(PoolSettings{4096, GrowthPolicy::Grow, name});
+}
+
+double reachOf(const WorldDef& def) {
+  const double fluid = def.fluid ? kernel::kSupport * def.fluid->spacing : 0.0;
+  const double bullet = def.bullet ? 2.0 * def.bullet->radius : 0.0;
+  const double domain = 1e-3 * def.domain.box.size().norm();  // a world without particles still has fields
+  return std::max(fluid, bullet) > 0.0 ? std::max(fluid, bullet) : domain;
+}
+
+}  // namespace
+
+World::Impl::Impl(const WorldDef& definition)
+    : def(definition), gravity(definition.gravity, definition.gravityField), bodies(definition.bodies) {
+  if (def.domain.box.empty() || !(def.domain.box.size().minCoeff() > 0.0)) {
+    throw Error("domain.box is empty; give [xmin, ymin, xmax, ymax] with min < max");
+  }
+  if (def.timeStep && !(*def.timeStep > 0.0)) throw Error("timeStep must be a positive number of seconds");
+  if (def.fluid) {
+    if (!(def.fluid->spacing > 0.0)) throw Error("fluid spacing must be a positive length");
+    if (!(def.fluid->density > 0.0)) throw Error("fluid density must be positive");
+    fluid = makePool("fluid");
+    fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);
+    fluidExpires = fluid->addColumn<double>("expires", ColumnKind::State);
+    fluidSource = fluid->addColumn<std::uint32_t>("source", ColumnKind::State);
+  }
+  if (def.bullet) {
+    if (!(def.bullet->radius > 0.0)) throw Error("bullet radius must be a positive length");
+    bullets = makePool("bullets");
+    ballistic = std::make_unique<Ballistic>(*def.bullet);
+    bulletExpires = bullets->addColumn<double>("expires", ColumnKind::State);
+    bulletSource = bullets->addColumn<std::uint32_t>("source", ColumnKind::State);
+  }
+  for (std::size_t k = 0; k < def.emitters.size(); ++k) {
+    const EmitterDef& e = def.emitters[k];
+    const bool isFluid = e.kind == EmitterDef::Kind::Fluid;
+    if (isFluid ? fluid == nullptr : bullets == nullptr) {
+      throw Error("emitter '" + e.name + "' emits " + (isFluid ? "fluid" : "bullets") + ", but the world has none");
+    }
+    emitters.emplace_back(e, def.fluid ? def.fluid->spacing : 0.0, def.seed, k);
+    anyLifetime = anyLifetime || std::isfinite(e.lifetime);
+  }
+  for (const SinkDef& s : def.sinks) sinks.add(*s.shape);
+  obstacles = std::make_unique<Obstacles>(def.domain, bodies, reachOf(def));
+  bodyStates.resize(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyMotion& m = bodies.motion(i);
+    bodyStates[i] = {m.transform(), m.angle, m.velocity, m.spin, {0.0, 0.0}, 0.0};
+  }
+  gravityScale = def.gravity.norm();
+  if (!gravity.isConstant()) {  // the largest on a 5 × 5 sample of the domain at the start
+    gravityScale = 0.0;
+    for (int k = 0; k < 25; ++k) {
+      const Vec2 p = def.domain.box.min + def.domain.box.size().cwiseProduct(Vec2(0.25 * (k % 5), 0.25 * (k / 5)));
+      gravityScale = std::max(gravityScale, gravity.at(p, 0.0).norm());
+    }
+  }
+}
+
+World::World(const WorldDef& def) : impl_(std::make_unique<Impl>(def)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+namespace {
+
+void addParticles(ParticlePool& pool, std::span<const Vec2> positions, std::span<const Vec2> velocities,
+                  ColumnId<double> expires) {
+  if (positions.size() != velocities.size()) throw Error("as many velocities as positions are needed");
+  pool.reserve(pool.size() + positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    pool.create();
+    const std::size_t k = pool.size() - 1;
+    pool.x()[k] = positions[i].x();
+    pool.y()[k] = positions[i].y();
+    pool.vx()[k] = velocities[i].x();
+    pool.vy()[k] = velocities[i].y();
+    pool.column(expires)[k] = kInfinity;
+  }
+}
+
+void checkPlaces(const World& world, const Box& box, std::span<const Vec2> positions) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!box.contains(positions[i]) || world.insideSolid(positions[i])) {
+      throw Error("particle " + std::to_string(i) + " at (" + std::to_string(positions[i].x()) + ", " +
+                  std::to_string(positions[i].y()) + ") lies inside a solid or outside the domain");
+    }
+  }
+}
+
+}  // namespace
+
+void World::addFluid(std::span<const Vec2> positions, std::span<const Vec2> velocities) {
+  if (impl_->fluid == nullptr) throw Error("this world has no fluid; set WorldDef::fluid");
+  checkPlaces(*this, impl_->def.domain.box, positions);
+  addParticles(*impl_->fluid, positions, velocities, impl_->fluidExpires);
+  ++impl_->version;
+}
+
+void World::addBullets(std::span<const Vec2> positions, std::span<const Vec2> velocities) {
+  if (impl_->bullets == nullptr) throw Error("this world has no bullets; set WorldDef::bullet");
+  checkPlaces(*this, impl_->def.domain.box, positions);
+  addParticles(*impl_->bullets, positions, velocities, impl_->bulletExpires);
+  ++impl_->version;
+}
+
+double World::time() const { return impl_->time; }
+const WorldDef& World::definition() const { return impl_->def; }
+const Ledger& World::ledger() const { return impl_->ledger; }
+const ParticlePool* World::fluid() const { return impl_->fluid.get(); }
+const ParticlePool* World::bullets() const { return impl_->bullets.get(); }
+ParticlePool* World::fluid() { return impl_->fluid.get(); }
+ParticlePool* World::bullets() { return impl_->bullets.get(); }
+double World::fluidMass() const { return impl_->fluidModel ? impl_->fluidModel->particleMass() : 0.0; }
+double World::bulletMass() const { return impl_->ballistic ? impl_->ballistic->mass() : 0.0; }
+std::size_t World::bodyCount() const { return impl_->bodies.size(); }
+const BodyState& World::body(std::size_t index) const { return impl_->bodyStates.at(index); }
+const BodyDef& World::bodyDefinition(std::size_t index) const { return impl_->def.bodies.at(index); }
+
+std::size_t World::bodyIndex(std::string_view name) const {
+  std::string known;
+  for (std::size_t i = 0; i < impl_->def.bodies.size(); ++i) {
+    if (impl_->def.bodies[i].name == name) return i;
+    if (i < 10) known += (i > 0 ? ", " : "") + impl_->def.bodies[i].name;
+  }
+  throw Error("no body is named '" + std::string(name) + "'; there are: " + (known.empty() ? "none" : known));
+}
+
+Totals World::totals(std::optional<Species> species) const {
+  Totals all;
+  auto add = [&](const ParticlePool* pool, double mass) {
+    if (pool == nullptr) return;
+    const Totals t = impl_->totalsOf(*pool, mass);
+    all.count += t.count;
+    all.mass += t.mass;
+    all.kinetic += t.kinetic;
+    all.potential += t.potential;
+    all.momentum += t.momentum;
+    all.angular += t.angular;
+    all.maxSpeed = std::max(all.maxSpeed, t.maxSpeed);
+  };
+  if (!species || *species == Species::Fluid) add(impl_->fluid.get(), fluidMass());
+  if (!species || *species == Species::Bullet) add(impl_->bullets.get(), bulletMass());
+  return all;
+}
+
+namespace {
+
+CollisionFilter fluidFilter(const WorldDef& def) {
+  return def.fluid ? CollisionFilter{def.fluid->group, def.fluid->collidesWith} : CollisionFilter{};
+}
+
+}  // namespace
+
+void World::filledFraction(std::span<const Vec2> points, std::span<double> phi) const {
+  if (impl_->fluid == nullptr) {
+    std::fill(phi.begin(), phi.end(), 0.0);
+    return;
+  }
+  impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
+  const CollisionFilter filter = fluidFilter(impl_->def);
+  parallelFor(points.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) phi[i] = impl_->query.filledFraction(*impl_->obstacles, filter, points[i]);
+  });
+}
+
+double World::pressureAt(const Vec2& point) const {
+  if (impl_->fluid == nullptr) return std::nan("");
+  impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
+  const auto pressure = impl_->fluid->column(*impl_->fluid->findColumn<float>("pressure"));
+  return impl_->def.fluid->density *
+         impl_->query.mean(point, [&](std::uint32_t i) { return static_cast<double>(pressure[i]); });
+}
+
+Vec2 World::velocityAt(const Vec2& point) const {
+  if (impl_->fluid == nullptr) return {std::nan(""), std::nan("")};
+  impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
+  const ParticlePool& pool = *impl_->fluid;
+  return {impl_->query.mean(point, [&](std::uint32_t i) { return pool.vx()[i]; }),
+          impl_->query.mean(point, [&](std::uint32_t i) { return pool.vy()[i]; })};
+}
+
+bool World::insideSolid(const Vec2& point) const {
+  return impl_->obstacles->distance(point, CollisionFilter{~0u, ~0u}).distance < 0.0;
+}
+
+std::string World::stateHash() const {
+  HashingArchive hashing;
+  impl_->archive(hashing);
+  return hashing.hash().hex();
+}
+
+void World::archive(Archive& a) {
+  impl_->archive(a);
+  if (a.loading()) ++impl_->version;
+}
+
+}  // namespace froude

@@ -1,0 +1,155 @@
+// Mass, momentum and energy: what there is, what came and went, and what the summary says of it.
+#include <array>
+
+#include <froude/base/parallel.h>
+#include <froude/solver/world_impl.h>
+
+namespace froude {
+namespace {
+
+// Sums of N terms over particles in one pass; fixed blocks, added in order.
+template <std::size_t N, typename Terms>
+std::array<double, N> sumOver(std::size_t count, Terms&& terms) {
+  std::array<double, N> total{};
+  constexpr std::size_t kMaxBlocks = 512;
+  std::size_t blockSize = kBlockSize;
+  while (blockCount(count, blockSize) > kMaxBlocks) blockSize *= 2;
+  std::array<std::array<double, N>, kMaxBlocks> partial;
+  parallelFor(count, blockSize, [&](std::size_t begin, std::size_t end) {
+    std::array<double, N> sum{};
+    for (std::size_t i = begin; i < end; ++i) terms(i, sum);
+    partial[begin / blockSize] = sum;
+  });
+  for (std::size_t b = 0; b < blockCount(count, blockSize); ++b) {
+    for (std::size_t k = 0; k < N; ++k) total[k] += partial[b][k];
+  }
+  return total;
+}
+
+double largestSpeed(const ParticlePool& pool) {
+  const auto vx = pool.vx(), vy = pool.vy();
+  return std::sqrt(parallelMax(pool.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+    double most = 0.0;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, vx[i] * vx[i] + vy[i] * vy[i]);
+    return most;
+  }));
+}
+
+}  // namespace
+
+double World::Impl::potentialOf(const Vec2& x) const {
+  if (!gravity.isConstant()) return 0.0;
+  const Vec2& g = gravity.constant();
+  // From the domain's lowest point, so that it is never negative inside; none along a periodic axis.
+  const Box& box = def.domain.box;
+  double potential = 0.0;
+  if (!def.domain.periodicX) potential -= g.x() * (x.x() - (g.x() > 0.0 ? box.max.x() : box.min.x()));
+  if (!def.domain.periodicY) potential -= g.y() * (x.y() - (g.y() > 0.0 ? box.max.y() : box.min.y()));
+  return potential;
+}
+
+Totals World::Impl::totalsOf(const ParticlePool& pool, double mass) const {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const auto sum = sumOver<5>(pool.size(), [&](std::size_t i, std::array<double, 5>& s) {
+    s[0] += 0.5 * (vx[i] * vx[i] + vy[i] * vy[i]);
+    s[1] += potentialOf({x[i], y[i]});
+    s[2] += vx[i];
+    s[3] += vy[i];
+    s[4] += x[i] * vy[i] - y[i] * vx[i];
+  });
+  return {pool.size(), mass * static_cast<double>(pool.size()), mass * sum[0], mass * sum[1],
+          mass * Vec2(sum[2], sum[3]), mass * sum[4], largestSpeed(pool)};
+}
+
+Balance World::Impl::balance() const {
+  Balance b;
+  auto add = [&](const ParticlePool& pool, double mass) {
+    const Totals t = totalsOf(pool, mass);
+    b.kinetic += t.kinetic;
+    b.potential += t.potential;
+    b.momentum += t.momentum;
+    b.mass += t.mass;
+    b.maxSpeed = std::max(b.maxSpeed, t.maxSpeed);
+  };
+  if (fluid != nullptr) add(*fluid, fluidModel->particleMass());
+  if (bullets != nullptr) add(*bullets, ballistic->mass());
+  b.finite = std::isfinite(b.kinetic + b.potential + b.momentum.x() + b.momentum.y());
+  return b;
+}
+
+void World::Impl::openAccounts() {
+  if (started) return;
+  started = true;
+  present = balance();
+  ledger.energy0 = present.energy();
+  ledger.momentum0 = present.momentum;
+  ledger.maxKinetic = present.kinetic;
+}
+
+double World::Impl::energyScale() const {
+  return std::max({std::abs(ledger.energy0), ledger.maxKinetic, 1e-300});
+}
+
+double World::Impl::outsideWork(const StepStats& stats, const Balance& after, double dt) const {
+  double work = stats.gravityWork + impulses.work();
+  if (gravity.isConstant()) {
+    if (def.domain.periodicX) work += gravity.constant().x() * after.momentum.x() * dt;
+    if (def.domain.periodicY) work += gravity.constant().y() * after.momentum.y() * dt;
+  }
+  return work;
+}
+
+Vec2 World::Impl::fastestParticle() const {
+  Vec2 at(0.0, 0.0);
+  double most = -1.0;
+  const auto x = fluid->x(), y = fluid->y(), vx = fluid->vx(), vy = fluid->vy();
+  for (std::size_t i = 0; i < fluid->size(); ++i) {
+    const double speed = vx[i] * vx[i] + vy[i] * vy[i];
+    if (!(speed > most) && !std::isnan(speed)) continue;
+    most = speed;
+    at = {x[i], y[i]};
+    if (std::isnan(speed)) break;
+  }
+  return at;
+}
+
+void World::Impl::remove(ParticlePool& pool, double mass, std::uint64_t& counter) {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const bool isFluid = &pool == fluid.get();
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    if (!pool.isMarked(static_cast<std::uint32_t>(i))) continue;
+    ++count;
+    const Vec2 v(vx[i], vy[i]);
+    const double energy = 0.5 * v.squaredNorm() + potentialOf({x[i], y[i]});
+    if (!std::isfinite(energy)) continue;
+    ledger.impulse -= mass * v;
+    ledger.work -= mass * energy;
+  }
+  if (count == 0) return;
+  counter += count;
+  if (isFluid) ledger.massRetired += static_cast<double>(count) * mass;
+  pool.compact();
+}
+
+void World::Impl::account(const StepStats& stats, double dt) {
+  const Balance after = balance();
+  ledger.substeps += 1;
+  ledger.particleSteps += (fluid ? fluid->size() : 0) + (bullets ? bullets->size() : 0);
+  ledger.sweeps += static_cast<std::uint64_t>(stats.sweeps);
+  ledger.wallHits += stats.wallHits;
+  ledger.leaks += stats.leaks;
+  ledger.crushed += stats.crushed;
+  ledger.maxDensityError = std::max(ledger.maxDensityError, stats.maxCompression);
+  ledger.densityErrorTime += stats.meanCompression * dt;
+  ledger.impulse += stats.gravityImpulse - impulses.total();
+  ledger.work += outsideWork(stats, after, dt);
+  ledger.maxKinetic = std::max(ledger.maxKinetic, after.kinetic);
+  ledger.maxSpeed = std::max(ledger.maxSpeed, after.maxSpeed);
+  const double gain = after.energy() - ledger.energy0 - ledger.work;
+  ledger.energyDrift = std::max(ledger.energyDrift, gain / energyScale());
+  ledger.dissipation = -gain;
+  present = after;
+}
+
+}  // namespace froude

@@ -1,0 +1,78 @@
+// The inside of World, shared by the files that step it, account for it and answer questions.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <froude/particles/emitter.h>
+#include <froude/particles/sink.h>
+#include <froude/solver/bullet/ballistic.h>
+#include <froude/solver/fluid/fluid_model.h>
+#include <froude/solver/fluid/fluid_query.h>
+#include <froude/solver/rigid/body_set.h>
+#include <froude/solver/world.h>
+
+namespace froude {
+
+/// Mechanical state of all particles, for the ledger.
+struct Balance {
+  double kinetic = 0.0, potential = 0.0;  // [J/m]
+  Vec2 momentum{0.0, 0.0};                // [kg/s]
+  double mass = 0.0;                      // [kg/m]
+  double maxSpeed = 0.0;                  // [m/s]
+  bool finite = true;
+  double energy() const { return kinetic + potential; }
+};
+
+struct World::Impl {
+  explicit Impl(const WorldDef& definition);
+
+  // Stages of a sub-step, in order (world_step.cpp).
+  StepBound chooseStep(double maxDt) const;
+  void quarantine();
+  void advance(double dt, StepStats& stats);
+  void judge(StepStats& stats, double dt);
+  void retire();
+  void emit(double dt);
+  void publishBodies(double dt);
+  void account(const StepStats& stats, double dt);
+  bool needsUndo() const { return fluidModel != nullptr; }
+  void archive(Archive& a);
+
+  // Accounts (world_account.cpp).
+  void openAccounts();
+  double outsideWork(const StepStats& stats, const Balance& after, double dt) const;
+  Vec2 fastestParticle() const;
+  Totals totalsOf(const ParticlePool& pool, double mass) const;
+  Balance balance() const;
+  double potentialOf(const Vec2& x) const;  // per mass [J/kg]
+  void remove(ParticlePool& pool, double mass, std::uint64_t& counter);
+  double energyScale() const;
+
+  WorldDef def;
+  Gravity gravity;
+  BodySet bodies;
+  std::unique_ptr<ParticlePool> fluid, bullets;
+  ColumnId<double> fluidExpires, bulletExpires;
+  ColumnId<std::uint32_t> fluidSource, bulletSource;
+  std::unique_ptr<FluidModel> fluidModel;
+  std::unique_ptr<Ballistic> ballistic;
+  std::unique_ptr<Obstacles> obstacles;
+  std::vector<Emitter> emitters;
+  SinkSet sinks;
+  MemorySnapshot snapshot;
+  AlignedArray<double> flat;  // work space of archive
+  ImpulseLedger impulses;
+  std::vector<BodyState> bodyStates;
+  Ledger ledger;
+  double time = 0.0;
+  double gravityScale = 0.0;  // largest |g| seen [m/s²]
+  Balance present;            // of the state as it stands
+  bool anyLifetime = false;
+  bool started = false;       // the accounts hold the start's energy and momentum
+  std::uint64_t version = 0;  // of the particles' places, for queries between steps
+  mutable FluidQuery query;
+};
+
+}  // namespace froude

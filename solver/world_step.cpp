@@ -1,0 +1,238 @@
+// The stages of a sub-step.
+#include <froude/base/parallel.h>
+#include <froude/solver/world_impl.h>
+
+namespace froude {
+namespace {
+
+constexpr double kLargestTurn = 0.5;        // [rad] of a body in a sub-step
+constexpr double kLargestBodyTravel = 0.25; // of the support radius in a sub-step, where there is a fluid
+constexpr double kFreeStep = 0.01;          // [s] where nothing binds the step
+
+double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
+
+}  // namespace
+
+StepReport World::substep(double maxDt) {
+  Impl& w = *impl_;
+  StepReport report;
+  w.quarantine();
+  w.openAccounts();
+  StepBound bound = w.chooseStep(maxDt);
+  if (w.needsUndo()) w.snapshot.save([&](Archive& a) { w.archive(a); });
+  for (int halving = 0;; ++halving) {
+    StepStats stats;
+    w.advance(bound.dt, stats);
+    w.judge(stats, bound.dt);
+    if (stats.trouble == Trouble::None || !w.needsUndo()) {
+      w.retire();
+      w.emit(bound.dt);
+      w.account(stats, bound.dt);
+      report.dt = bound.dt;
+      report.substeps = 1;
+      report.limit = bound.limit;
+      break;
+    }
+    w.snapshot.load([&](Archive& a) { w.archive(a); });
+    ++report.rejected;
+    if (w.def.timeStep || halving == w.def.limits.halvings) {
+      report.trouble = stats.trouble;
+      report.troubleValue = stats.troubleValue;
+      report.troubleLimit = stats.troubleLimit;
+      report.troubleAt = stats.troubleAt;
+      break;
+    }
+    bound = {0.5 * bound.dt, StepLimit::Undone};
+  }
+  ++w.version;
+  w.ledger.rejected += static_cast<std::uint64_t>(report.rejected);
+  w.ledger.limits[static_cast<std::size_t>(report.limit)] += static_cast<std::uint64_t>(report.substeps);
+  return report;
+}
+
+StepReport World::step(double dt) {
+  StepReport total;
+  ++impl_->ledger.steps;
+  if (!(dt > 0.0)) return total;
+  const double end = time() + dt;
+  // The last sub-step ends at the end to rounding; what is left is then below the resolution of time.
+  while (end - time() > 1e-12 * std::max(1.0, end)) {
+    const StepReport part = substep(end - time());
+    total.dt += part.dt;
+    total.substeps += part.substeps;
+    total.rejected += part.rejected;
+    total.limit = part.limit;
+    total.trouble = part.trouble;
+    total.troubleValue = part.troubleValue;
+    total.troubleLimit = part.troubleLimit;
+    total.troubleAt = part.troubleAt;
+    if (!part.ok()) break;
+  }
+  return total;
+}
+
+StepBound World::Impl::chooseStep(double maxDt) const {
+  if (def.timeStep) return {*def.timeStep, StepLimit::Literal};
+  StepBound bound{kFreeStep, StepLimit::Requested};
+  if (fluidModel != nullptr) {
+    const StepBound fluidBound = fluidModel->stepBound(present.maxSpeed, gravityScale);
+    bound.tighten(fluidBound.dt, fluidBound.limit);
+  }
+  if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, gravityScale), StepLimit::Bullet);
+  if (bodies.anyMoves()) {
+    const double spin = bodies.maxSpin();
+    if (spin > 0.0) bound.tighten(kLargestTurn / spin, StepLimit::Spin);
+    const double speed = bodies.maxSurfaceSpeed();
+    if (fluidModel != nullptr && speed > 0.0) {
+      bound.tighten(kLargestBodyTravel * fluidModel->supportRadius() / speed, StepLimit::Wall);
+    }
+  }
+  if (maxDt <= bound.dt) return {maxDt, StepLimit::Requested};
+  // Two equal halves instead of a full step and a sliver.
+  if (maxDt < 2.0 * bound.dt) bound.dt = 0.5 * maxDt;
+  return bound;
+}
+
+// What came in broken (a user's columns, say) is taken out before it spreads.
+void World::Impl::quarantine() {
+  auto check = [&](ParticlePool& pool, double mass) {
+    const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+    const double bad = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
+      double count = 0.0;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (std::isfinite(x[i] + y[i] + vx[i] + vy[i])) continue;
+        pool.kill(static_cast<std::uint32_t>(i));
+        ++count;
+      }
+      return count;
+    });
+    if (bad > 0.0) {
+      ledger.quarantined += static_cast<std::uint64_t>(bad);
+      ledger.massRetired += &pool == fluid.get() ? bad * mass : 0.0;
+      pool.compact();
+    }
+  };
+  if (fluid != nullptr) check(*fluid, fluidModel->particleMass());
+  if (bullets != nullptr) check(*bullets, ballistic->mass());
+}
+
+void World::Impl::advance(double dt, StepStats& stats) {
+  bodies.beginStep(time, dt);
+  const double reach = (fluidModel != nullptr ? fluidModel->supportRadius() : 0.0) +
+                       (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * gravityScale;
+  obstacles->beginStep(bodies, dt, 2.0 * reach);
+  impulses.reset(bodies.size());
+  const StepContext context{time, dt, gravity, *obstacles, def.simd};
+  if (fluidModel != nullptr) fluidModel->advance(context, *fluid, impulses, stats);
+  if (ballistic != nullptr) ballistic->advance(context, *bullets, impulses, stats);
+  publishBodies(dt);
+  bodies.finishStep(dt);
+  time += dt;
+}
+
+void World::Impl::publishBodies(double dt) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyMotion& m = bodies.motion(i);
+    BodyState& state = bodyStates[i];
+    const auto owner = static_cast<int>(i);
+    state.velocity = m.velocity;
+    state.spin = m.spin;
+    state.force = impulses.impulse(owner) / dt;
+    const Vec2 center = m.transform().toWorld(bodies.definition(i).shape->centroid());
+    state.torque = (impulses.moment(owner) - cross(center, impulses.impulse(owner))) / dt;
+    state.angle = m.angle + dt * m.spin;
+    state.transform = Transform::of(m.position + dt * m.velocity, state.angle);
+  }
+}
+
+void World::Impl::judge(StepStats& stats, double dt) {
+  if (stats.trouble != Trouble::None || fluidModel == nullptr) return;
+  const Balance after = balance();
+  auto fail = [&](Trouble why, double value, double limit) {
+    stats.trouble = why;
+    stats.troubleValue = value;
+    stats.troubleLimit = limit;
+    stats.troubleAt = fastestParticle();
+  };
+  if (!after.finite || !std::isfinite(stats.maxCompression)) {
+    fail(Trouble::NonFinite, std::nan(""), 0.0);
+    return;
+  }
+  const double travel = after.maxSpeed * dt / fluidModel->supportRadius();
+  if (travel > def.limits.displacement) {
+    fail(Trouble::Displacement, travel, def.limits.displacement);
+    return;
+  }
+  if (stats.maxCompression > def.limits.compression) {
+    fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
+    return;
+  }
+  const double gain = (after.energy() - ledger.energy0 - ledger.work - outsideWork(stats, after, dt)) / energyScale();
+  if (gain > def.limits.energyGain) fail(Trouble::EnergyGain, gain, def.limits.energyGain);
+}
+
+void World::Impl::emit(double dt) {
+  for (std::size_t k = 0; k < emitters.size(); ++k) {
+    Emitter& emitter = emitters[k];
+    const bool isFluid = emitter.def().kind == EmitterDef::Kind::Fluid;
+    ParticlePool& pool = isFluid ? *fluid : *bullets;
+    const double mass = isFluid ? fluidModel->particleMass() : ballistic->mass();
+    const auto sourceColumn = isFluid ? fluidSource : bulletSource;
+    const auto expiresColumn = isFluid ? fluidExpires : bulletExpires;
+    const double start = time - dt;
+    const std::size_t pending = emitter.pending(start, dt);
+    if (pending == 0) continue;
+    const auto tag = static_cast<std::uint32_t>(k + 1);
+    const std::size_t live = countWith(pool, sourceColumn, tag);
+    if (emitter.def().policy == GrowthPolicy::RecycleOldest && live + pending > emitter.def().limit) {
+      const std::size_t old = markOldestWith(pool, sourceColumn, tag, live + pending - emitter.def().limit);
+      ledger.recycled += old;
+      std::uint64_t removed = 0;
+      remove(pool, mass, removed);
+    }
+    auto place = [&](const Vec2& position, const Vec2& velocity) {
+      const ParticleHandle handle = pool.tryCreate();
+      if (handle.isNull()) {
+        ++ledger.refused;
+        return;
+      }
+      const std::size_t i = pool.size() - 1;
+      pool.x()[i] = position.x();
+      pool.y()[i] = position.y();
+      pool.vx()[i] = velocity.x();
+      pool.vy()[i] = velocity.y();
+      pool.column(sourceColumn)[i] = tag;
+      pool.column(expiresColumn)[i] = emitter.expiry(time);
+      ++ledger.emitted;
+      if (isFluid) ledger.massEmitted += mass;
+      ledger.impulse += mass * velocity;
+      ledger.work += mass * (0.5 * velocity.squaredNorm() + potentialOf(position));
+    };
+    const std::uint64_t before = emitter.refused();
+    emitter.emit(start, dt, place, emitter.room(live));
+    ledger.refused += emitter.refused() - before;
+  }
+}
+
+void World::Impl::retire() {
+  auto clean = [&](ParticlePool& pool, double mass, ColumnId<double> expires) {
+    std::uint64_t crushed = 0;
+    remove(pool, mass, crushed);  // what the models marked; their own counters have it
+    const auto x = pool.x(), y = pool.y();
+    const Box& box = def.domain.box;
+    parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (def.domain.periodicX) x[i] = wrapped(x[i], box.min.x(), box.max.x());
+        if (def.domain.periodicY) y[i] = wrapped(y[i], box.min.y(), box.max.y());
+        if (!box.contains({x[i], y[i]})) pool.kill(static_cast<std::uint32_t>(i));
+      }
+    });
+    remove(pool, mass, ledger.retired);
+    if (!sinks.empty() && sinks.mark(pool) > 0) remove(pool, mass, ledger.sunk);
+    if (anyLifetime && markExpired(pool, expires, time) > 0) remove(pool, mass, ledger.expired);
+  };
+  if (fluid != nullptr) clean(*fluid, fluidModel->particleMass(), fluidExpires);
+  if (bullets != nullptr) clean(*bullets, ballistic->mass(), bulletExpires);
+}
+
+}  // namespace froude
