@@ -100,7 +100,7 @@ class Path {
   std::string of(std::string_view name) const { return text_ + std::string(name); }
 
  private:
-  std::string text_;
+  std::string text_ = "state/";  // apart from the tables and texts at the top
   std::vector<std::size_t> ends_;
 };
 

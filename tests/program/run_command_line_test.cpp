@@ -1,0 +1,172 @@
+// What a command line is read as, and what is said of a wrong one.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/request.h"
+#include "run/exit_codes.h"
+
+namespace froude::cli {
+namespace {
+
+Request parse(std::vector<std::string> words) {
+  words.insert(words.begin(), "froude");
+  return parseCommandLine(words);
+}
+
+// What is said of a wrong line; empty when it is taken.
+std::string complaint(const std::vector<std::string>& words) {
+  try {
+    parse(words);
+  } catch (const run::UsageError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+void expectComplaint(const std::vector<std::string>& words, const std::vector<std::string>& parts) {
+  const std::string said = complaint(words);
+  EXPECT_FALSE(said.empty()) << "taken: " << quoted(words);
+  for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << part << " in: " << said;
+}
+
+TEST(CommandLine, run_takes_all_its_options) {
+  const auto run = std::get<run::RunOptions>(parse({"run",
+                                                    "a.toml",
+                                                    "-o",
+                                                    "dir",
+                                                    "--force",
+                                                    "--threads",
+                                                    "3",
+                                                    "--until",
+                                                    "0.5",
+                                                    "--set",
+                                                    "model.spacing=0.02",
+                                                    "--set",
+                                                    "title=a=b",
+                                                    "--frames",
+                                                    "png",
+                                                    "--simd",
+                                                    "scalar",
+                                                    "--trace-leaks",
+                                                    "--quiet",
+                                                    "--verbose"}));
+  EXPECT_EQ(run.scene, "a.toml");
+  EXPECT_EQ(run.folder, "dir");
+  EXPECT_EQ(run.session.threads, 3);
+  EXPECT_EQ(run.session.until, 0.5);
+  EXPECT_EQ(run.session.simd, SimdTarget::Scalar);
+  EXPECT_TRUE(run.session.force && run.session.traceLeaks && run.session.quiet && run.session.verbose);
+  const std::vector<scene::Override> expected{
+      {"model.spacing", "0.02"}, {"title", "a=b"}, {"output.frames", "[\"png\"]"}};
+  EXPECT_EQ(run.overrides, expected);
+}
+
+TEST(CommandLine, left_out_options_keep_their_defaults) {
+  const auto run = std::get<run::RunOptions>(parse({"run", "a.toml"}));
+  EXPECT_TRUE(run.folder.empty());
+  EXPECT_TRUE(run.overrides.empty());
+  EXPECT_EQ(run.session.threads, 0);
+  EXPECT_FALSE(run.session.until.has_value());
+  EXPECT_FALSE(run.session.simd.has_value());
+  EXPECT_FALSE(run.session.force || run.session.quiet || run.session.verbose || run.session.traceLeaks);
+}
+
+TEST(CommandLine, a_set_takes_one_word_and_leaves_the_scene_alone) {
+  const auto run = std::get<run::RunOptions>(parse({"run", "--set", "seed=2", "a.toml"}));
+  EXPECT_EQ(run.scene, "a.toml");
+  EXPECT_EQ(run.overrides.size(), 1u);
+}
+
+TEST(CommandLine, frames_none_is_an_empty_list_and_both_kinds_keep_their_order) {
+  const auto frames = [](const std::string& list) {
+    return std::get<run::RunOptions>(parse({"run", "a.toml", "--frames", list})).overrides.at(0).second;
+  };
+  EXPECT_EQ(frames("none"), "[]");
+  EXPECT_EQ(frames("h5,png"), "[\"h5\", \"png\"]");
+}
+
+TEST(CommandLine, the_other_commands_are_read) {
+  const auto check = std::get<CheckRequest>(parse({"check", "a.toml", "b.toml", "--strict", "--json"}));
+  EXPECT_EQ(check.scenes, (std::vector<std::string>{"a.toml", "b.toml"}));
+  EXPECT_TRUE(check.strict && check.json);
+  EXPECT_TRUE(std::get<ExplainRequest>(parse({"explain", "a.toml", "--json"})).json);
+  const auto resume =
+      std::get<run::ResumeOptions>(parse({"resume", "out/a", "--until", "1", "--threads", "2", "--force"}));
+  EXPECT_EQ(resume.folder, "out/a");
+  EXPECT_EQ(resume.session.until, 1.0);
+  EXPECT_TRUE(resume.session.force);
+  EXPECT_FALSE(std::get<DoctorRequest>(parse({"doctor"})).json);
+}
+
+TEST(CommandLine, an_unknown_command_names_the_nearest_and_all) {
+  expectComplaint({"rnu", "a.toml"}, {"rnu", "nearest", "run", "check", "explain", "resume", "doctor"});
+  expectComplaint({"batch", "a.toml"}, {"batch", "run", "doctor"});
+  expectComplaint({}, {"missing", "run", "doctor"});
+}
+
+TEST(CommandLine, an_unknown_option_names_the_nearest) {
+  expectComplaint({"run", "a.toml", "--forse"}, {"--forse", "--force", "froude run --help"});
+  expectComplaint({"run", "a.toml", "--thread=3"}, {"--thread", "--threads"});
+  expectComplaint({"--quiet", "run", "a.toml"}, {"--quiet"});
+  expectComplaint({"doctor", "--strict"}, {"--strict"});
+}
+
+TEST(CommandLine, wrong_values_are_named_with_what_would_be_right) {
+  expectComplaint({"run", "a.toml", "--threads", "0"}, {"--threads", "0", "from 1 to"});
+  expectComplaint({"run", "a.toml", "--threads", "two"}, {"--threads", "two", "whole number"});
+  expectComplaint({"run", "a.toml", "--threads", "1.5"}, {"--threads", "1.5"});
+  expectComplaint({"run", "a.toml", "--until", "-1"}, {"--until", "-1", "seconds"});
+  expectComplaint({"run", "a.toml", "--until", "nan"}, {"--until", "nan"});
+  expectComplaint({"run", "a.toml", "--until", "1s"}, {"--until", "1s"});
+  expectComplaint({"run", "a.toml", "--simd", "avx9"}, {"--simd", "avx9", "scalar"});
+  expectComplaint({"run", "a.toml", "--frames", "pgn"}, {"--frames", "pgn", "png"});
+  expectComplaint({"run", "a.toml", "--frames", "png,,h5"}, {"--frames"});
+  expectComplaint({"run", "a.toml", "--set", "seed"}, {"--set", "seed", "PATH=VALUE"});
+  expectComplaint({"run", "a.toml", "--set", "=1"}, {"--set", "PATH=VALUE"});
+  expectComplaint({"run", "a.toml", "--threads"}, {"--threads"});
+}
+
+TEST(CommandLine, what_this_version_does_not_have_is_refused_in_words) {
+  expectComplaint({"run", "a.toml", "--accuracy", "5%"}, {"--accuracy", "not in this version", "model.fluid"});
+  expectComplaint({"run", "a.toml", "--frames", "png,vdb"}, {"vdb", "not in this version"});
+}
+
+TEST(CommandLine, missing_and_surplus_arguments_are_named) {
+  expectComplaint({"run"}, {"SCENE.toml", "missing"});
+  expectComplaint({"run", "--quiet"}, {"SCENE.toml", "missing"});
+  expectComplaint({"check"}, {"SCENE.toml", "missing"});
+  expectComplaint({"resume"}, {"DIR", "missing"});
+  expectComplaint({"run", "a.toml", "b.toml"}, {"b.toml", "too many"});
+  expectComplaint({"run", "a.toml", "--threads", "1", "--threads", "2"}, {"--threads"});
+  expectComplaint({"run", "a.toml", "-o", ""}, {"-o"});
+}
+
+TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
+  for (const char* command : {"run", "check", "explain", "resume", "doctor"}) {
+    const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
+    EXPECT_NE(help.find("Example:\n  froude " + std::string(command)), std::string::npos) << help;
+    EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
+  }
+  const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
+  for (const char* command : {"run", "check", "explain", "resume", "doctor"}) {
+    EXPECT_NE(help.find(command), std::string::npos);
+  }
+}
+
+TEST(CommandLine, the_version_line_has_version_commit_and_simd_target) {
+  const std::string line = std::get<PrintRequest>(parse({"--version"})).text;
+  EXPECT_EQ(line.find("froude 0."), 0u) << line;
+  EXPECT_NE(line.find("commit "), std::string::npos);
+  EXPECT_NE(line.find("SIMD " + std::string(name(bestSimdTarget()))), std::string::npos);
+}
+
+TEST(CommandLine, quoting_gives_back_what_a_shell_would_split) {
+  EXPECT_EQ(quoted({"froude", "run", "a b.toml"}), "froude run 'a b.toml'");
+  EXPECT_EQ(quoted({"--set", "title='x'"}), "--set 'title='\\''x'\\'''");
+  EXPECT_EQ(quoted({""}), "''");
+}
+
+}  // namespace
+}  // namespace froude::cli
