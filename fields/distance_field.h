@@ -8,17 +8,18 @@
 
 namespace froude {
 
-/// A grid over the polygon's box grown by the band; a cell near the boundary keeps the edges that are closest to at least one
-/// of its points, any other cell a conservative distance. All points are in the polygon's own frame [m]. Immutable; queries
-/// allocate nothing and may run on any number of threads.
+/// A grid over the polygon's box grown by the band; a cell near the boundary keeps the edges that are closest to at
+/// least one of its points, any other cell a conservative distance. All points are in the polygon's own frame [m].
+/// Immutable; queries allocate nothing and may run on any number of threads.
 class DistanceField {
  public:
-  /// `band` [m]: how far from the boundary, on both sides, `sample` is exact: at least the largest disc's radius or support
-  /// radius. `cellSize` [m]: 0 chooses it by the polygon's size and number of edges. Throws Error unless band > 0 and finite.
-  /// Cost: O(cells near the boundary).
+  /// `band` [m]: how far from the boundary, on both sides, `sample` is exact: at least the largest disc's radius or
+  /// support radius. `cellSize` [m]: 0 chooses it by the polygon's size and number of edges. Throws Error unless band >
+  /// 0 and finite. Cost: O(cells near the boundary).
   DistanceField(const Polygon& polygon, double band, double cellSize = 0.0);
 
-  /// Exact for |distance| ≤ band, else a bound. Exactly on the boundary the distance is 0 and the normal still a unit vector.
+  /// Exact for |distance| ≤ band, else a bound. Exactly on the boundary the distance is 0 and the normal still a unit
+  /// vector.
   FieldSample sample(const Vec2& local) const { return grid_.sample(local); }
   /// Exact everywhere. Cost far from the boundary: a search over rings of cells.
   FieldSample sampleExact(const Vec2& local) const { return grid_.sampleExact(local); }

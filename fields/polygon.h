@@ -31,12 +31,13 @@ class PolygonError : public Error {
 };
 
 /// Outer ring counter-clockwise, holes clockwise, so that the solid is on the left of every edge. Rings are closed
-/// implicitly. Edge i runs from vertex i to its successor in the ring, so edges and vertices share their numbers. Immutable.
+/// implicitly. Edge i runs from vertex i to its successor in the ring, so edges and vertices share their numbers.
+/// Immutable.
 class Polygon {
  public:
-  /// Checks and repairs. Repaired, with a line in `notes` for each: wrong winding, a repeated closing or neighbouring vertex,
-  /// a vertex in the middle of a straight run. All decisions are exact.
-  /// Coordinates [m]. Throws PolygonError. Cost: near O(n log n).
+  /// Checks and repairs. Repaired, with a line in `notes` for each: wrong winding, a repeated closing or neighbouring
+  /// vertex, a vertex in the middle of a straight run. All decisions are exact. Coordinates [m]. Throws PolygonError.
+  /// Cost: near O(n log n).
   static Polygon make(std::vector<Vec2> outer, std::vector<std::vector<Vec2>> holes = {},
                       std::vector<std::string>* notes = nullptr);
   /// The rectangle of `box`. Throws PolygonError for an empty or flat one.
@@ -61,8 +62,8 @@ class Polygon {
   double area() const { return area_; }
   /// Centre of area [m].
   const Vec2& centroid() const { return centroid_; }
-  /// Polar second moment of area about the centroid [m⁴]; times a density [kg/m²] it is the moment of inertia. Accurate far
-  /// from the origin.
+  /// Polar second moment of area about the centroid [m⁴]; times a density [kg/m²] it is the moment of inertia. Accurate
+  /// far from the origin.
   double secondMoment() const { return secondMoment_; }
   const Box& bounds() const { return bounds_; }
   /// True inside and exactly on the boundary. Exact. Cost: O(edges).

@@ -1,0 +1,212 @@
+#include <froude/fields/chord.h>
+
+#include <array>
+#include <utility>
+
+#include <froude/fields/predicates.h>
+
+namespace froude::detail {
+namespace {
+
+/// Tests one path against one feature after the other and keeps the earliest contact.
+class ContactSearch {
+ public:
+  ContactSearch(const EdgeGrid& grid, const Chord& chord)
+      : grid_(grid),
+        from_(chord.from),
+        to_(chord.to),
+        path_(chord.to - chord.from),
+        reach_(chord.radius + chord.slack + chord.skin),
+        near_(chord.radius + chord.slack + 0.5 * chord.skin),
+        skin_(chord.skin),
+        rounding_(0.0625 * chord.skin),
+        slack_(chord.slack),
+        curved_(chord.slack > rounding_),
+        exact_(chord.radius == 0.0 && chord.slack == 0.0) {}
+
+  const ChordHit& best() const { return best_; }
+  double reach() const { return reach_; }
+
+  void test(std::uint32_t index) {
+    const GridEdge& e = grid_.edges()[index];
+    const Vec2 arm = from_ - e.a;
+    const double sFrom = -cross(e.direction, arm);  // outwards
+    const double sPath = -cross(e.direction, path_);
+    if (sFrom > reach_ && sFrom + sPath > reach_) return;  // outside this edge's line all the way, so of its start too
+    testEdge(index, e, arm, sFrom, sPath);
+    if (e.convexStart != 0) testStart(index, e, arm);
+  }
+
+  /// What must not happen, a path that gets deep inside without a contact, ends where it is.
+  void stopAt(double time, std::uint32_t edge) { keep({true, time, edge, false}); }
+
+ private:
+  void keep(const ChordHit& hit) {
+    if (!best_.hit || hit.time < best_.time || (hit.time == best_.time && hit.edge < best_.edge)) best_ = hit;
+  }
+
+  /// The part of the path over the edge's own strip. At a concave vertex, which no disc can touch, the strip is a skin
+  /// longer, so that nothing slips between it and its neighbour's.
+  void testEdge(std::uint32_t index, const GridEdge& e, const Vec2& arm, double sFrom, double sPath) {
+    const double low = e.convexStart != 0 ? 0.0 : -skin_;
+    const double high = e.length + (e.convexEnd != 0 ? 0.0 : skin_);
+    const double along = e.direction.dot(arm);
+    const double step = e.direction.dot(path_);
+    double begin = 0.0;
+    double end = 1.0;
+    if (along < low || along > high || along + step < low || along + step > high) {
+      if (step == 0.0) return;
+      const double t0 = (low - along) / step;
+      const double t1 = (high - along) / step;
+      begin = std::max(0.0, std::min(t0, t1));
+      end = std::min(1.0, std::max(t0, t1));
+      if (begin > end) return;
+    }
+    const double sBegin = sFrom + begin * sPath;
+    const double sEnd = sFrom + end * sPath;
+    if (sBegin < -skin_) return;  // from behind: the path enters, if it does, elsewhere
+    if (exact_ && sBegin < 0.5 * skin_) {
+      const bool deeper = sEnd < sBegin - rounding_ && orientation(e.a, e.b, from_) > 0;
+      if (deeper || crossesExactly(index, e)) keep({true, begin, index, false});
+      return;
+    }
+    if (curved_) {
+      if (sBegin > reach_ ? sEnd >= reach_ : sPath >= 4.0 * slack_) return;
+    } else if (sEnd >= (sBegin >= near_ ? near_ : sBegin - rounding_)) {
+      return;
+    }
+    const double time = sBegin > reach_ ? begin + (end - begin) * ((sBegin - reach_) / (sBegin - sEnd)) : begin;
+    keep({true, time, index, false});
+  }
+
+  /// The convex vertex at the start of the edge.
+  void testStart(std::uint32_t index, const GridEdge& e, const Vec2& arm) {
+    const double a = path_.squaredNorm();
+    const double b = arm.dot(path_);  // half the derivative of the squared distance at the start
+    const double start = arm.norm();
+    const double closestTime = a > 0.0 ? std::clamp(-b / a, 0.0, 1.0) : 0.0;
+    const double closest = (arm + closestTime * path_).norm();
+    if (start > reach_) {
+      if (closest >= (curved_ ? reach_ : near_)) return;
+      const double root = std::sqrt(std::max(0.0, b * b - a * (start - reach_) * (start + reach_)));
+      keep({true, std::clamp((start - reach_) * (start + reach_) / (root - b), 0.0, closestTime), index, true});
+      return;
+    }
+    if (exact_ && start < 0.5 * skin_) return;                        // decided with the edges
+    if (e.direction.dot(arm) > 0.0 || beforeEnd(e.previous)) return;  // beside an edge, not over the vertex
+    if (curved_ ? b < 4.0 * slack_ * start : closest < (start >= near_ ? near_ : start - rounding_)) {
+      keep({true, 0.0, index, true});
+    }
+  }
+
+  bool beforeEnd(std::int32_t previous) const {
+    const GridEdge& e = grid_.edges()[static_cast<std::size_t>(previous)];
+    return e.direction.dot(from_ - e.b) < 0.0;
+  }
+
+  /// True if the path passes from outside, or from the boundary, through this edge or one of its ends to the inside.
+  bool crossesExactly(std::uint32_t index, const GridEdge& e) const {
+    if (orientation(e.a, e.b, from_) > 0 || orientation(e.a, e.b, to_) <= 0) return false;
+    const int start = orientation(from_, to_, e.a);
+    const int end = orientation(from_, to_, e.b);
+    if (start * end > 0) return false;
+    if (start == 0 && e.convexStart != 0) {
+      return orientation(grid_.edges()[static_cast<std::size_t>(e.previous)].a, e.a, to_) > 0;
+    }
+    if (end == 0 && e.convexEnd != 0) {
+      return orientation(e.b, grid_.edges()[static_cast<std::size_t>(grid_.next(index))].b, to_) > 0;
+    }
+    return true;
+  }
+
+  const EdgeGrid& grid_;
+  const Vec2 from_, to_, path_;
+  const double reach_;  // contacts are placed at this distance
+  const double near_;   // what stays farther is no contact
+  const double skin_, rounding_, slack_;
+  const bool curved_;
+  const bool exact_;
+  ChordHit best_;
+};
+
+/// Fractions of the path within the box; empty (first > second) if it misses it.
+std::pair<double, double> clip(const Vec2& from, const Vec2& path, const Box& box) {
+  double begin = 0.0;
+  double end = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (path[axis] == 0.0) {
+      if (from[axis] < box.min[axis] || from[axis] > box.max[axis]) return {1.0, 0.0};
+      continue;
+    }
+    const double t0 = (box.min[axis] - from[axis]) / path[axis];
+    const double t1 = (box.max[axis] - from[axis]) / path[axis];
+    begin = std::max(begin, std::min(t0, t1));
+    end = std::min(end, std::max(t0, t1));
+  }
+  return {begin, end};
+}
+
+/// Fraction at which the path leaves the block of `span` cells round column i, row j.
+double exitTime(const EdgeGrid& grid, const Chord& chord, int i, int j, int span) {
+  const Vec2 path = chord.to - chord.from;
+  double time = kInfinity;
+  const std::array<int, 2> block{i / span * span, j / span * span};
+  for (int axis = 0; axis < 2; ++axis) {
+    if (path[axis] == 0.0) continue;
+    const int side = block[static_cast<std::size_t>(axis)] + (path[axis] > 0.0 ? span : 0);
+    time = std::min(time, (grid.origin()[axis] + side * grid.cellSize() - chord.from[axis]) / path[axis]);
+  }
+  return time;
+}
+
+}  // namespace
+
+ChordHit firstContact(const EdgeGrid& grid, const Chord& chord, const SourceFilter* accepts) {
+  ContactSearch search(grid, chord);
+  const Vec2 path = chord.to - chord.from;
+  const auto [enter, leave] = clip(chord.from, path, grid.box());
+  const double length = path.norm();
+  const double perMetre = length > 0.0 ? 1.0 / length : 0.0;
+  // A little over the border of a cell; cells know their surroundings ten times as far.
+  const double nudge = std::max(1e-7 * grid.cellSize() * perMetre, 0x1p-51);
+  double time = enter;
+  while (time <= leave) {
+    const Vec2 at = chord.from + time * path;
+    const int i = grid.column(at.x());
+    const int j = grid.row(at.y());
+    const std::size_t cell = grid.cellOf(at);
+    double exit = exitTime(grid, chord, i, j, accepts == nullptr ? 1 : grid.coarseness());
+    const double clearance = static_cast<double>(grid.clearance()[cell]);
+    if (clearance > search.reach()) {
+      exit = std::max(exitTime(grid, chord, i, j, 1), time + (clearance - search.reach()) * perMetre);
+    } else if (accepts != nullptr) {
+      for (const std::uint32_t e : grid.within(at)) {
+        if ((*accepts)(grid.edges()[e].source)) search.test(e);
+      }
+    } else if (grid.nearest(cell).empty()) {
+      if (clearance < 0.0) search.stopAt(time, static_cast<std::uint32_t>(std::max(0, grid.sampleExact(at).edge)));
+    } else {
+      for (const std::uint32_t e : grid.nearest(cell)) search.test(e);
+    }
+    if (search.best().hit && search.best().time <= exit) break;
+    time = std::max(exit, time) + nudge;
+  }
+  return search.best();
+}
+
+Vec2 contactNormal(const EdgeGrid& grid, const ChordHit& hit, const Vec2& center) {
+  const GridEdge& e = grid.edges()[hit.edge];
+  if (!hit.vertex) return e.normal();
+  const Vec2 arm = center - e.a;
+  const double length = arm.norm();
+  return length > 0.0 ? Vec2(arm / length) : e.normal();
+}
+
+Vec2 contactPoint(const EdgeGrid& grid, const ChordHit& hit, const Vec2& center) {
+  const GridEdge& e = grid.edges()[hit.edge];
+  if (hit.vertex) return e.a;
+  const double along = std::clamp(e.direction.dot(center - e.a), 0.0, e.length);
+  return e.a + along * e.direction;
+}
+
+}  // namespace froude::detail

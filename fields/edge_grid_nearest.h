@@ -1,0 +1,71 @@
+// The search for the closest feature with a sign that is right where rounding would decide. Internal to EdgeGrid.
+#pragma once
+
+#include <froude/fields/edge_grid.h>
+#include <froude/fields/predicates.h>
+
+namespace froude::detail {
+
+/// The closest feature so far, kept apart by what it says about the point: inside or outside. In exact arithmetic the
+/// nearer one is right; where rounding cannot tell which is nearer, the point is located exactly.
+struct EdgeGrid::Nearest {
+  const EdgeGrid& grid;
+  const Vec2& p;
+  double inside = kInfinity;  // squared distances within the current source
+  double outside = kInfinity;
+  std::uint32_t insideEdge = 0;
+  std::uint32_t outsideEdge = 0;
+  double best = kInfinity;  // signed square of the distance, least over the sources so far
+  std::uint32_t bestEdge = 0;
+  bool any = false;
+  double limit = kInfinity;  // squared distance beyond which a source is not known well enough to count
+
+  /// A vertex belongs to the edge that starts there; the part of the plane beyond an edge's end is its successor's
+  /// business.
+  void consider(std::uint32_t index) {
+    const GridEdge& e = grid.edges_[index];
+    const Vec2 arm = p - e.a;
+    const double along = e.direction.dot(arm);
+    if (along > e.length) return;
+    const double left = cross(e.direction, arm);
+    const bool vertex = along < 0.0;
+    const double square = vertex ? arm.squaredNorm() : left * left;
+    if (vertex ? e.convexStart == 0 : left > 0.0) {
+      if (square < inside) inside = square, insideEdge = index;
+    } else {
+      if (square < outside) outside = square, outsideEdge = index;
+    }
+  }
+
+  void closeSource(std::uint32_t source) {
+    const double nearer = std::min(inside, outside);
+    if (nearer == kInfinity) return;
+    if (nearer > limit) {
+      inside = outside = kInfinity;
+      return;
+    }
+    const double rounding = grid.rounding_;
+    const double gap = inside - outside;
+    const double doubt = rounding * rounding * std::max(nearer, rounding * rounding);
+    bool isInside = gap < 0.0;
+    if (gap * gap <= 4.0 * doubt) {
+      isInside = grid.contains(source, p);
+    } else if (nearer <= rounding * rounding) {
+      isInside = onTheSpot(isInside ? insideEdge : outsideEdge, source);
+    }
+    const double value = isInside ? -nearer : nearer;
+    const std::uint32_t edge = inside < outside ? insideEdge : outsideEdge;
+    if (!any || value < best) best = value, bestEdge = edge;
+    any = true;
+    inside = outside = kInfinity;
+  }
+
+  /// Sign within rounding of a single feature.
+  bool onTheSpot(std::uint32_t index, std::uint32_t source) const {
+    const GridEdge& e = grid.edges_[index];
+    if (e.direction.dot(p - e.a) < 0.0) return grid.contains(source, p);
+    return orientation(e.a, e.b, p) >= 0;
+  }
+};
+
+}  // namespace froude::detail

@@ -1,0 +1,26 @@
+// Sweeps in the frame of a grid, shared by polygons and the world. Internal.
+#pragma once
+
+#include <froude/fields/chord.h>
+#include <froude/fields/sweep.h>
+
+namespace froude::detail {
+
+/// True if every coordinate is finite.
+inline bool finitePath(const Vec2& from, const Vec2& to) { return from.allFinite() && to.allFinite(); }
+
+/// The skin for coordinates up to the largest of the grid and these points [m].
+double skinFor(const EdgeGrid& grid, std::initializer_list<Vec2> points);
+
+/// Fills `hit` and returns true if a disc at `center` overlaps by more than the skin, given the field's answer there.
+bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& center, const Chord& chord,
+                  SweepHit* hit);
+
+/// Where to put a disc that touched at `center` with outward `normal`: a little outwards, to `clearance` [m] beyond its
+/// radius, if it is closer than three quarters of that and there is room. Returns the shift.
+Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, const Vec2& normal, double radius, double clearance);
+
+/// The whole sweep for a solid at rest.
+SweepHit sweepChord(const EdgeGrid& grid, const Chord& chord, const FieldSample& atStart, const SourceFilter* accepts);
+
+}  // namespace froude::detail
