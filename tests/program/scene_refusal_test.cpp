@@ -65,7 +65,8 @@ TEST(SceneRefusal, keys_of_the_first_lines) {
       {"format = 1\nduration = 1\ngravity = [0.0]\n", "3:11: gravity: is an array of 1", "[x, y]"},
       {"format = 1\nduration = 1\ngravity = [0, true]\n", "3:15: gravity: is a boolean", "expression"},
       {"format = 1\nduration = 1\ngravity = [0, nan]\n", "3:15: gravity: is nan", ""},
-      {"format = 1\nduration = 1\ngravity = [0, \"-9.81*z\"]\n", "3:15: gravity: \"-9.81*z\": Unexpected token \"z\"", "x, y, t"},
+      {"format = 1\nduration = 1\ngravity = [0, \"-9.81*z\"]\n", "3:15: gravity: \"-9.81*z\": Unexpected token \"z\"",
+       "x, y, t"},
       {"format = 1\nduration = 1\ngravity = [0, \"sin(\"]\n", "3:15: gravity: ", "sin("},
   });
 }
@@ -93,7 +94,8 @@ TEST(SceneRefusal, the_domain) {
 TEST(SceneRefusal, the_model_and_the_fluid) {
   expectRefusals({
       {kHead + "[model]\nfluid = \"pfb\"\n", "6:9: model.fluid: is \"pfb\"", "\"pbf\""},
-      {kHead + "[model]\nfluid = \"dfsph\"\n", "6:9: model.fluid: \"dfsph\" is not in this version", "this build has: pbf"},
+      {kHead + "[model]\nfluid = \"dfsph\"\n", "6:9: model.fluid: \"dfsph\" is not in this version",
+       "this build has: pbf"},
       {kHead + "[model]\nfluid = \"wcsph\"\n", "6:9: model.fluid: \"wcsph\" is not in this version", "pbf"},
       {kHead + "[model]\nfluid = \"apic\"\n", "6:9: model.fluid: \"apic\" is not in this version", "pbf"},
       {kHead + "[model]\ntime_step = 0.0\n", "6:13: model.time_step: is 0", "above 0"},
@@ -105,7 +107,8 @@ TEST(SceneRefusal, the_model_and_the_fluid) {
       {kHead + "[model]\nspacin = 0.1\n", "6:1: model.spacin: unknown key", "\"spacing\""},
       {kHead + "[fluid]\ndensity = 0\n", "6:11: fluid.density: is 0", "above 0"},
       {kHead + "[fluid]\nviscosity = -1\n", "6:13: fluid.viscosity: is -1", ""},
-      {kHead + "[fluid]\nsurface_tension = 0.07\n", "6:19: fluid.surface_tension: surface tension is not in this version", ""},
+      {kHead + "[fluid]\nsurface_tension = 0.07\n",
+       "6:19: fluid.surface_tension: surface tension is not in this version", ""},
       {kHead + "[fluid]\ncontact_angle = 200\n", "6:17: fluid.contact_angle: is 200", "180"},
       {kHead + "[fluid]\n[fluid]\n", "6:", "one fluid per scene"},
       {kHead + "[[fluid]]\n[[fluid]]\n", "6:1: fluid: a second fluid", "one fluid per scene"},
@@ -122,21 +125,25 @@ TEST(SceneRefusal, blocks_of_fluid) {
       {block + "shape = { box = [0, 0, 1, 1], regular = { sides = 3, radius = 1 } }\n",
        "8:41: fluid.block.0.shape.regular: a second kind of shape", ""},
       {block + "shape = { svg = { file = \"a.svg\" } }\n", "8:17: fluid.block.0.shape.svg: ", "not in this version"},
-      {block + "shape = { box = [0, 0, 1, 1], holes = [] }\n", "8:39: fluid.block.0.shape.holes: holes belong to a polygon", ""},
-      {block + "shape = { regular = { sides = 2, radius = 1 } }\n", "8:31: fluid.block.0.shape.regular.sides: is 2", "from 3"},
+      {block + "shape = { box = [0, 0, 1, 1], holes = [] }\n",
+       "8:39: fluid.block.0.shape.holes: holes belong to a polygon", ""},
+      {block + "shape = { regular = { sides = 2, radius = 1 } }\n", "8:31: fluid.block.0.shape.regular.sides: is 2",
+       "from 3"},
       {block + "shape = { regular = { sides = 5 } }\n", "8:21: fluid.block.0.shape.regular.radius: is missing", ""},
-      {block + "shape = { polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }\n", "8:21: fluid.block.0.shape.polygon: ", "cross"},
+      {block + "shape = { polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }\n",
+       "8:21: fluid.block.0.shape.polygon: ", "cross"},
       {block + "shape = { polygon = [[0, 0], [1, 1], [2, 2]] }\n", "8:21: fluid.block.0.shape.polygon: ", ""},
       {block + "shape = { polygon = [[0, 0], [1, 1, 1], [1, 0]] }\n",
        "8:30: fluid.block.0.shape.polygon: vertex 1 is no pair", ""},
-      {block + "shape = { polygon = [[0, 0], [1, nan], [1, 0]] }\n", "8:34: fluid.block.0.shape.polygon: vertex 1 holds nan", ""},
+      {block + "shape = { polygon = [[0, 0], [1, nan], [1, 0]] }\n",
+       "8:34: fluid.block.0.shape.polygon: vertex 1 holds nan", ""},
       {block + "shape = { polygon = [[0, 0], [1, 0], [1, 1]], holes = [[[5, 5], [6, 5], [6, 6]]] }\n",
        "8:21: fluid.block.0.shape.polygon: ", "hole"},
-      {block + "shape = { box = [0.0, 0.0, 0.05, 1.0] }\n", "8:9: fluid.block.0.shape: is 0.05 m × 1 m, smaller than the spacing",
-       "at most 0.05"},
+      {block + "shape = { box = [0.0, 0.0, 0.05, 1.0] }\n",
+       "8:9: fluid.block.0.shape: is 0.05 m × 1 m, smaller than the spacing", "at most 0.05"},
       {block + "shape = { box = [5, 5, 6, 6] }\n", "8:9: fluid.block.0.shape: has no free place", "domain"},
-      {block + "shape = { box = [0.5, 0.5, 3, 2] }\ncut = false\n", "8:9: fluid.block.0.shape: overlaps the edge of the domain",
-       "cut = true"},
+      {block + "shape = { box = [0.5, 0.5, 3, 2] }\ncut = false\n",
+       "8:9: fluid.block.0.shape: overlaps the edge of the domain", "cut = true"},
       {block + "shape = { box = [0, 0, 1, 1] }\n[[fluid.block]]\nshape = { box = [0.2, 0.2, 0.8, 0.8] }\n",
        "10:9: fluid.block.1.shape: has no free place", "an earlier block"},
       {block + "shape = { box = [0, 0, 1, 1] }\n[[fluid.block]]\nshape = { box = [0.5, 0, 1.5, 1] }\ncut = false\n",
@@ -144,7 +151,8 @@ TEST(SceneRefusal, blocks_of_fluid) {
       {block + "shape = { box = [0, 0, 1, 1] }\n[[body]]\nname = \"all\"\nshape = { box = [0, 0, 2, 1] }\n",
        "8:9: fluid.block.0.shape: has no free place", "body.all"},
       {block + "shape = { box = [0, 0, 1, 1] }\nvelocity = [\"t\", 0]\n", "9:13: fluid.block.0.velocity: ", "x, y"},
-      {block + "shape = { box = [0, 0, 1, 1] }\nvelocity = [\"1/(x-x)\", 0]\n", "9:12: fluid.block.0.velocity: is [inf, 0]", ""},
+      {block + "shape = { box = [0, 0, 1, 1] }\nvelocity = [\"1/(x-x)\", 0]\n",
+       "9:12: fluid.block.0.velocity: is [inf, 0]", ""},
       {block + "shape = { box = [0, 0, 1, 1] }\ncount = 5\n", "9:1: fluid.block.0.count: unknown key", "\"cut\""},
   });
 }
@@ -175,7 +183,8 @@ TEST(SceneRefusal, bullets_emitters_and_sinks) {
        "8:6: emitter.0.to: the nozzle has no length", ""},
       {kHead + "[[emitter]]\nkind = \"fluid\"\nfrom = [0.5, 0.5]\nto = [2.5, 0.5]\nspeed = 1\n",
        "8:6: emitter.0.to: the nozzle's end [2.5, 0.5] is outside the domain", ""},
-      {kHead + "[[emitter]]\nkind = \"fluid\"\nfrom = [0.5, 0.5]\nto = [0.4, 0.5]\nspeed = 0\n", "9:9: emitter.0.speed: is 0", ""},
+      {kHead + "[[emitter]]\nkind = \"fluid\"\nfrom = [0.5, 0.5]\nto = [0.4, 0.5]\nspeed = 0\n",
+       "9:9: emitter.0.speed: is 0", ""},
       {kHead + "[[emitter]]\nkind = \"fluid\"\nfrom = [0.5, 0.5]\nto = [0.4, 0.5]\nspeed = 1\nrate = 5\n",
        "10:8: emitter.0.rate: belongs to bullets", ""},
       {kHead + "[model]\nspacing = 0.2\n[[emitter]]\nkind = \"fluid\"\nfrom = [0.5, 0.5]\nto = [0.4, 0.5]\nspeed = 1\n",
@@ -199,30 +208,38 @@ TEST(SceneRefusal, bodies) {
       {body + "group = -1\n", "8:9: body.gate.group: is -1", ""},
       {body + "spin = 1.0\n", "8:8: body.gate.spin: a fixed body does not move", "scripted"},
       {body + "script = [{ until = 1 }]\n", "8:10: body.gate.script: a fixed body does not move", ""},
-      {body + "motion = \"scripted\"\nscript = [{ until = 1 }, { until = 1 }]\n", "9:36: body.gate.script.1.until: is 1",
-       "above 1"},
-      {body + "motion = \"scripted\"\nscript = [{ velocity = [1, 0] }]\n", "9:11: body.gate.script.0.until: is missing", ""},
-      {body + "motion = \"scripted\"\nscript = [{ until = 1, spin = \"x\" }]\n", "9:30: body.gate.script.0.spin: \"x\"", ""},
-      {body + "motion = \"scripted\"\nscript = [{ until = 1, spin = \"1/t\" }]\n", "9:30: body.gate.script.0.spin: is not finite",
-       "t = 0"},
+      {body + "motion = \"scripted\"\nscript = [{ until = 1 }, { until = 1 }]\n",
+       "9:36: body.gate.script.1.until: is 1", "above 1"},
+      {body + "motion = \"scripted\"\nscript = [{ velocity = [1, 0] }]\n", "9:11: body.gate.script.0.until: is missing",
+       ""},
+      {body + "motion = \"scripted\"\nscript = [{ until = 1, spin = \"x\" }]\n", "9:31: body.gate.script.0.spin: \"x\"",
+       ""},
+      {body + "motion = \"scripted\"\nscript = [{ until = 1, spin = \"1/t\" }]\n",
+       "9:31: body.gate.script.0.spin: is not finite", "t = 0"},
       {body + "motion = \"scripted\"\nvelocity = [1, 0]\nscript = [{ until = 1 }]\n",
        "9:12: body.gate.velocity: stands beside a script", ""},
       {body + "position = [5, 5]\n", "8:12: body.gate.position: the body lies wholly outside the domain", ""},
-      {body + "[[body]]\nname = \"gate\"\nshape = { box = [0, 0, 1, 1] }\n", "9:8: body.gate.name: \"gate\" is taken", ""},
-      {kHead + "[[body]]\nname = \"3 gates\"\nshape = { box = [0, 0, 1, 1] }\n", "6:8: body.3 gates.name: is \"3 gates\"", "letter"},
-      {kHead + "[[body]]\nshape = { polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }\n", "6:21: body.0.shape.polygon: ", "cross"},
+      {body + "[[body]]\nname = \"gate\"\nshape = { box = [0, 0, 1, 1] }\n", "9:8: body.gate.name: \"gate\" is taken",
+       ""},
+      {kHead + "[[body]]\nname = \"3 gates\"\nshape = { box = [0, 0, 1, 1] }\n",
+       "6:8: body.3 gates.name: is \"3 gates\"", "letter"},
+      {kHead + "[[body]]\nshape = { polygon = [[0, 0], [1, 1], [1, 0], [0, 1]] }\n",
+       "6:21: body.0.shape.polygon: ", "cross"},
       {body + "repeat = { count = [0, 1], step = [[1, 0], [0, 1]] }\n", "8:21: body.gate.repeat.count: ", "from 1"},
       {body + "repeat = { count = [2, 2] }\n", "8:10: body.gate.repeat.step: is missing", ""},
       {body + "repeat = { count = [2, 2], step = [[1, 0]] }\n", "8:35: body.gate.repeat.step: ", "2 of the form"},
-      {body + "repeat = { count = [100000, 100000], step = [[1, 0], [0, 1]] }\n", "8:20: body.gate.repeat.count: ", "copies"},
-      {body + "repeat = { count = [9, 1], step = [[1, 0], [0, 1]] }\n", "7:9: body.gate.shape: the body (copy gate.3) lies", ""},
-      {kHead + "[[soft]]\nname = \"jelly\"\n", "5:1: soft: soft bodies are not in this version", ""},
+      {body + "repeat = { count = [100000, 100000], step = [[1, 0], [0, 1]] }\n",
+       "8:20: body.gate.repeat.count: ", "copies"},
+      {body + "repeat = { count = [9, 1], step = [[1, 0], [0, 1]] }\n",
+       "7:9: body.gate.shape: the body (copy gate.3) lies", ""},
+      {kHead + "[[soft]]\nname = \"jelly\"\n", "5:3: soft: soft bodies are not in this version", ""},
   });
 }
 
 TEST(SceneRefusal, gauges) {
-  const std::string scene = kHead + kFluid + "[[body]]\nname = \"gate\"\nshape = { box = [1.5, 0, 1.6, 1] }\n";  // 15 lines
-  const std::string gauge = scene + "[[gauge]]\nname = \"g\"\n";                                                 // next is 18
+  const std::string scene =
+      kHead + kFluid + "[[body]]\nname = \"gate\"\nshape = { box = [1.5, 0, 1.6, 1] }\n";  // 15 lines
+  const std::string gauge = scene + "[[gauge]]\nname = \"g\"\n";                           // next is 18
   expectRefusals({
       {scene + "[[gauge]]\ntype = \"toe\"\n", "16:1: gauge.0.name: is missing", ""},
       {scene + "[[gauge]]\nname = \"a.b\"\n", "17:8: gauge.a.b.name: is \"a.b\"", "letter"},
@@ -230,12 +247,14 @@ TEST(SceneRefusal, gauges) {
       {gauge + "type = \"toe\"\n[[gauge]]\nname = \"g\"\ntype = \"toe\"\n", "20:8: gauge.g.name: \"g\" is taken", ""},
       {gauge, "16:1: gauge.g.type: is missing", ""},
       {gauge + "type = \"tow\"\n", "18:8: gauge.g.type: \"tow\" is no type of gauge", "\"toe\""},
-      {gauge + "type = \"tip\"\nsoft = \"jelly\"\n", "18:8: gauge.g.type: \"tip\" reads soft bodies", "not in this version"},
+      {gauge + "type = \"tip\"\nsoft = \"jelly\"\n", "18:8: gauge.g.type: \"tip\" reads soft bodies",
+       "not in this version"},
       {gauge + "type = \"area\"\n", "18:8: gauge.g.type: \"area\" reads soft bodies", ""},
       {gauge + "type = \"toe\"\nx = 0.5\n", "19:1: gauge.g.x: a gauge of type toe takes no parameter", ""},
       {gauge + "type = \"height\"\n", "16:1: gauge.g.x: is missing", ""},
       {gauge + "type = \"height\"\nx = 2.5\n", "19:5: gauge.g.x: is 2.5", "at most 2"},
-      {gauge + "type = \"height\"\nx = 0.5\nat = [0, 0]\n", "20:1: gauge.g.at: a gauge of type height takes only x", ""},
+      {gauge + "type = \"height\"\nx = 0.5\nat = [0, 0]\n", "20:1: gauge.g.at: a gauge of type height takes only x",
+       ""},
       {gauge + "type = \"pressure\"\nat = [0.5, 3]\n", "19:6: gauge.g.at: the point [0.5, 3] is outside", ""},
       {gauge + "type = \"front\"\naxis = \"z\"\n", "19:8: gauge.g.axis: is \"z\"", ""},
       {gauge + "type = \"front\"\nquantile = 2\n", "19:12: gauge.g.quantile: is 2", ""},
@@ -265,11 +284,12 @@ TEST(SceneRefusal, output) {
 }
 
 TEST(SceneRefusal, no_file_of_rubbish_does_worse_than_a_refusal) {
-  const std::string whole = kHead + kFluid +
-                            "[[body]]\nname = \"gate\"\nshape = { polygon = [[1.5, 0.0], [1.6, 0.0], [1.6, 0.5]], holes = [] }\n"
-                            "motion = \"scripted\"\nscript = [{ until = 1.0, velocity = [\"sin(t)\", 0.0] }]\n"
-                            "repeat = { count = [2, 1], step = [[0.2, 0.0], [0.0, 0.0]], turn = 1.0 }\n"
-                            "[[gauge]]\nname = \"toe\"\ntype = \"toe\"\nevery = 0.1\n[output]\nframes = [\"png\"]\n";
+  const std::string whole =
+      kHead + kFluid +
+      "[[body]]\nname = \"gate\"\nshape = { polygon = [[1.5, 0.0], [1.6, 0.0], [1.6, 0.5]], holes = [] }\n"
+      "motion = \"scripted\"\nscript = [{ until = 1.0, velocity = [\"sin(t)\", 0.0] }]\n"
+      "repeat = { count = [2, 1], step = [[0.2, 0.0], [0.0, 0.0]], turn = 1.0 }\n"
+      "[[gauge]]\nname = \"toe\"\ntype = \"toe\"\nevery = 0.1\n[output]\nframes = [\"png\"]\n";
   ASSERT_EQ(refusal(whole), "accepted");
   const std::string bytes = "\n[]{}=\"'.,#-0e9ax_\\ \t\xC3\xFF";
   std::uint64_t state = 1;
@@ -283,10 +303,17 @@ TEST(SceneRefusal, no_file_of_rubbish_does_worse_than_a_refusal) {
     for (std::size_t change = 0; change <= next(3); ++change) {
       const std::size_t at = next(text.size());
       switch (next(4)) {
-        case 0: text.erase(at, 1 + next(8)); break;
-        case 1: text[at] = bytes[next(bytes.size())]; break;
-        case 2: text.insert(at, 1, bytes[next(bytes.size())]); break;
-        default: text.insert(at, text.substr(next(text.size()), next(20)));
+        case 0:
+          text.erase(at, 1 + next(8));
+          break;
+        case 1:
+          text[at] = bytes[next(bytes.size())];
+          break;
+        case 2:
+          text.insert(at, 1, bytes[next(bytes.size())]);
+          break;
+        default:
+          text.insert(at, text.substr(next(text.size()), next(20)));
       }
     }
     const std::string got = refusal(text);  // anything but a SceneError or a scene fails the test

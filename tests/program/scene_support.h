@@ -16,8 +16,9 @@ class SceneFile {
  public:
   explicit SceneFile(const std::string& text, const std::string& name = "scene.toml") {
     static int number = 0;
-    folder_ = std::filesystem::temp_directory_path() /
-              ("froude-scene-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" + std::to_string(number++));
+    folder_ =
+        std::filesystem::temp_directory_path() /
+        ("froude-scene-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" + std::to_string(number++));
     std::filesystem::create_directories(folder_);
     path_ = (folder_ / name).string();
     std::ofstream(path_, std::ios::binary) << text;

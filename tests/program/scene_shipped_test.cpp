@@ -1,0 +1,96 @@
+// The scenes of the house: sound, without a warning, and exactly what they claim to be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "scene/scene.h"
+
+namespace froude {
+namespace {
+
+scene::Scene shipped(const std::string& name) {
+  return scene::load(std::string(FROUDE_SOURCE_DIR) + "/scenes/" + name + ".toml");
+}
+
+TEST(ShippedScenes, none_has_a_warning_or_cuts_anything_and_each_says_what_to_see) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(FROUDE_SOURCE_DIR) + "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    SCOPED_TRACE(entry.path().string());
+    ++count;
+    const scene::Scene s = scene::load(entry.path().string());
+    for (const scene::Warning& warning : s.warnings) ADD_FAILURE() << warning.line();
+    for (const std::string& note : s.notes) ADD_FAILURE() << note;
+    std::ifstream stream(entry.path());
+    std::string first;
+    std::getline(stream, first);
+    EXPECT_EQ(first.rfind("# What to see: ", 0), 0u) << first;
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST(ShippedScenes, the_dam_break_is_the_column_of_Martin_and_Moyce) {
+  const scene::Scene s = shipped("dam_break");
+  EXPECT_EQ(s.fluidParticles(), 40u * 80u);
+  Box box;
+  for (const Vec2& p : s.fluidBlocks[0].positions) box.include(p);
+  const double a = 2.25 * 0.0254, dx = s.world.fluid->spacing;
+  EXPECT_NEAR(box.max.x() - box.min.x() + dx, a, 1e-12);
+  EXPECT_NEAR(box.max.y() - box.min.y() + dx, 2 * a, 1e-12);
+  EXPECT_GT(s.world.domain.box.max.x(), 4.11 * a + 4 * dx);  // the front's last datum
+  EXPECT_GT(s.duration, 7.4 * std::sqrt(a / 9.81));          // the height's last datum
+  ASSERT_GE(s.gauges.size(), 3u);
+  EXPECT_EQ(s.gauges[0].type, "toe");
+  EXPECT_EQ(s.gauges[2].type, "height");
+  EXPECT_DOUBLE_EQ(s.gauges[2].x, 0.5 * dx);
+}
+
+TEST(ShippedScenes, the_still_tank_stands_on_its_floor) {
+  const scene::Scene s = shipped("still_tank");
+  EXPECT_EQ(s.fluidParticles(), 100u * 50u);
+  EXPECT_EQ(s.world.bodies.at(0).name, "floor");
+  EXPECT_EQ(s.world.bodies.at(0).shape->bounds().max.y(), 0.0);
+}
+
+TEST(ShippedScenes, the_speed_scenes_are_those_that_other_programs_were_measured_on) {
+  for (const char* name : {"dam_speed", "sieve"}) {
+    const scene::Scene s = shipped(name);
+    EXPECT_EQ(s.fluidParticles(), 99856u);
+    EXPECT_DOUBLE_EQ(s.world.fluid->spacing, 1.0 / 316.0);
+    EXPECT_EQ(s.world.domain.box.max, Vec2(3.0, 2.0));
+    EXPECT_EQ(s.duration, 2.0);
+    const std::vector<Vec2>& points = s.fluidBlocks[0].positions;
+    for (const std::size_t k :
+         {std::size_t{0}, std::size_t{315}, std::size_t{316}, std::size_t{50000}, points.size() - 1}) {
+      EXPECT_NEAR(points[k].x(), (static_cast<double>(k % 316) + 0.5) / 316.0, 1e-13);
+      EXPECT_NEAR(points[k].y(), (static_cast<double>(k / 316) + 0.5) / 316.0, 1e-13);
+    }
+  }
+  EXPECT_EQ(shipped("dam_speed").world.bodies.size(), 0u);
+  const scene::Scene sieve = shipped("sieve");
+  ASSERT_EQ(sieve.world.bodies.size(), 200u);
+  for (int j = 0; j < 10; ++j)
+    for (int i = 0; i < 20; ++i) {
+      const BodyDef& peg = sieve.world.bodies[static_cast<std::size_t>(20 * j + i)];
+      const Vec2 center(1.15 + 0.09 * i, 0.08 + 0.09 * j);
+      ASSERT_EQ(peg.shape->vertices().size(), 8u);
+      for (int k = 0; k < 8; ++k) {
+        const double at = 0.1 * (20 * j + i) + kPi * k / 4;
+        const Vec2 vertex =
+            Transform::of(peg.position, peg.angle).toWorld(peg.shape->vertices()[static_cast<std::size_t>(k)]);
+        EXPECT_NEAR((vertex - center - 0.03 * Vec2(std::cos(at), std::sin(at))).norm(), 0.0, 1e-13);
+      }
+    }
+}
+
+TEST(ShippedScenes, ten_and_forty_thousand_particles_are_one_key_away) {
+  const std::string file = std::string(FROUDE_SOURCE_DIR) + "/scenes/dam_speed.toml";
+  EXPECT_EQ(scene::load(file, {{"model.spacing", "0.01"}}).fluidParticles(), 10000u);
+  EXPECT_EQ(scene::load(file, {{"model.spacing", "0.005"}}).fluidParticles(), 40000u);
+}
+
+}  // namespace
+}  // namespace froude
