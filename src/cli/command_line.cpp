@@ -61,7 +61,7 @@ CLI::Validator wholeNumber(int low, int high) {
             if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
             return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
           },
-          "N"};
+          ""};
 }
 
 CLI::Validator seconds() {
@@ -70,7 +70,7 @@ CLI::Validator seconds() {
             if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.0) return {};
             return fmt::format("'{}' is not a time in seconds, 0 or more", text);
           },
-          "SECONDS"};
+          ""};
 }
 
 // Options as they are typed; what needs more than a look is judged after parsing.
@@ -100,7 +100,7 @@ void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& t
 
 void addRun(CLI::App& app, Typed& typed) {
   CLI::App& command = *app.add_subcommand("run", "run a scene to its end");
-  command.add_option("SCENE", typed.run.scene, "the scene, a .toml file")->type_name("");
+  command.add_option("SCENE", typed.run.scene, "the scene, a .toml file")->type_name("")->required();
   command.add_option("-o", typed.run.folder, "the run's folder, absent or empty; default: out/SCENE, out/SCENE-2, ...")
       ->type_name("DIR");
   command.add_flag("--force", typed.run.session.force, "replace the files of an earlier run in the folder");
@@ -116,7 +116,7 @@ void addRun(CLI::App& app, Typed& typed) {
 
 void addResume(CLI::App& app, Typed& typed) {
   CLI::App& command = *app.add_subcommand("resume", "go on with a run that was stopped");
-  command.add_option("DIR", typed.resume.folder, "the run's folder")->type_name("");
+  command.add_option("DIR", typed.resume.folder, "the run's folder")->type_name("")->required();
   command.add_flag("--force", typed.resume.session.force, "go on although the SIMD target, and so the bits, differ");
   addSessionOptions(command, typed.resume.session, typed);
   command.footer(std::string(kResumeFooter));
@@ -124,13 +124,13 @@ void addResume(CLI::App& app, Typed& typed) {
 
 void addReaders(CLI::App& app, Typed& typed) {
   CLI::App& check = *app.add_subcommand("check", "read and judge scenes, run nothing");
-  check.add_option("SCENE", typed.check.scenes, "scenes, .toml files")->type_name("");
+  check.add_option("SCENE", typed.check.scenes, "scenes, .toml files")->type_name("")->required();
   check.add_flag("--strict", typed.check.strict, "a warning is an error");
   check.add_flag("--json", typed.check.json, "findings as JSON on stdout");
   check.footer(std::string(kCheckFooter));
 
   CLI::App& explain = *app.add_subcommand("explain", "say what of a scene is modelled and why, and what it will cost");
-  explain.add_option("SCENE", typed.explain.scene, "the scene, a .toml file")->type_name("");
+  explain.add_option("SCENE", typed.explain.scene, "the scene, a .toml file")->type_name("")->required();
   explain.add_flag("--json", typed.explain.json, "as JSON");
   explain.footer(std::string(kExplainFooter));
 
@@ -177,10 +177,6 @@ void refuseExtras(const CLI::App& command) {
   throw UsageError(fmt::format("'{}' is one argument too many{}", word, hint));
 }
 
-void require(const std::string& value, std::string_view command, std::string_view what) {
-  if (value.empty()) throw UsageError(fmt::format("{}: {} is missing{}", command, what, helpHint(command)));
-}
-
 std::optional<SimdTarget> targetNamed(const std::string& word) {
   if (word.empty()) return std::nullopt;
   const std::optional<SimdTarget> target = simdTarget(word);
@@ -223,14 +219,13 @@ void finishSession(run::SessionOptions& session, const Typed& typed, const CLI::
 }
 
 run::RunOptions finishRun(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
-  require(typed.run.scene, "run", "the scene, SCENE.toml,");
   if (command.count("--accuracy") > 0) {
     throw UsageError(
         "--accuracy: not in this version: nothing chooses a model yet; name it in the scene as model.fluid");
   }
   for (const std::string& text : typed.sets) typed.run.overrides.push_back(overrideOf(text));
   if (command.count("--frames") > 0) typed.run.overrides.emplace_back("output.frames", framesValue(typed.frames));
-  if (command.count("-o") > 0) require(typed.run.folder, "run", "the folder behind -o");
+  if (command.count("-o") > 0 && typed.run.folder.empty()) throw UsageError("-o: the name of the folder is empty");
   finishSession(typed.run.session, typed, command, arguments);
   return std::move(typed.run);
 }
@@ -239,18 +234,11 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   const std::string& name = command.get_name();
   if (name == "run") return finishRun(typed, command, arguments);
   if (name == "resume") {
-    require(typed.resume.folder, "resume", "the run's folder, DIR,");
     finishSession(typed.resume.session, typed, command, arguments);
     return typed.resume;
   }
-  if (name == "check") {
-    require(typed.check.scenes.empty() ? "" : "given", "check", "a scene, SCENE.toml,");
-    return typed.check;
-  }
-  if (name == "explain") {
-    require(typed.explain.scene, "explain", "the scene, SCENE.toml,");
-    return typed.explain;
-  }
+  if (name == "check") return typed.check;
+  if (name == "explain") return typed.explain;
   return typed.doctor;
 }
 
@@ -303,6 +291,7 @@ Request parseCommandLine(const std::vector<std::string>& arguments) {
     return PrintRequest{app.help()};
   } catch (const CLI::ParseError& e) {
     const std::vector<CLI::App*> chosen = app.get_subcommands();
+    for (const CLI::App* command : chosen) refuseExtras(*command);  // a misspelt option explains a missing argument
     throw UsageError(e.what() + helpHint(chosen.empty() ? "" : chosen.front()->get_name()));
   }
   const std::vector<CLI::App*> chosen = app.get_subcommands();

@@ -109,6 +109,7 @@ TEST(CommandLine, an_unknown_command_names_the_nearest_and_all) {
 TEST(CommandLine, an_unknown_option_names_the_nearest) {
   expectComplaint({"run", "a.toml", "--forse"}, {"--forse", "--force", "froude run --help"});
   expectComplaint({"run", "a.toml", "--thread=3"}, {"--thread", "--threads"});
+  expectComplaint({"run", "--forse"}, {"--forse", "--force"});
   expectComplaint({"--quiet", "run", "a.toml"}, {"--quiet"});
   expectComplaint({"doctor", "--strict"}, {"--strict"});
 }
@@ -134,10 +135,10 @@ TEST(CommandLine, what_this_version_does_not_have_is_refused_in_words) {
 }
 
 TEST(CommandLine, missing_and_surplus_arguments_are_named) {
-  expectComplaint({"run"}, {"SCENE.toml", "missing"});
-  expectComplaint({"run", "--quiet"}, {"SCENE.toml", "missing"});
-  expectComplaint({"check"}, {"SCENE.toml", "missing"});
-  expectComplaint({"resume"}, {"DIR", "missing"});
+  expectComplaint({"run"}, {"SCENE", "required"});
+  expectComplaint({"run", "--quiet"}, {"SCENE", "required"});
+  expectComplaint({"check"}, {"SCENE", "required"});
+  expectComplaint({"resume"}, {"DIR", "required"});
   expectComplaint({"run", "a.toml", "b.toml"}, {"b.toml", "too many"});
   expectComplaint({"run", "a.toml", "--threads", "1", "--threads", "2"}, {"--threads"});
   expectComplaint({"run", "a.toml", "-o", ""}, {"-o"});
