@@ -8,6 +8,20 @@
 namespace froude::detail {
 namespace {
 
+/// A part of the path.
+struct Interval {
+  double begin = 0.0;
+  double end = 1.0;
+
+  /// Keeps where value + t · slope ≤ 0; false if nothing is left.
+  bool keepBelow(double value, double slope) {
+    if (value > 0.0 && slope >= 0.0) return false;
+    if (value > 0.0) begin = std::max(begin, -value / slope);
+    if (value <= 0.0 && slope > 0.0) end = std::min(end, -value / slope);
+    return begin <= end;
+  }
+};
+
 /// Tests one path against one feature after the other and keeps the earliest contact.
 class ContactSearch {
  public:
@@ -52,22 +66,14 @@ class ContactSearch {
     const double high = e.length + (e.convexEnd != 0 ? 0.0 : skin_);
     const double along = e.direction.dot(arm);
     const double step = e.direction.dot(path_);
-    double begin = 0.0;
-    double end = 1.0;
-    if (along < low || along > high || along + step < low || along + step > high) {
-      if (step == 0.0) return;
-      const double t0 = (low - along) / step;
-      const double t1 = (high - along) / step;
-      begin = std::max(0.0, std::min(t0, t1));
-      end = std::min(1.0, std::max(t0, t1));
-      if (begin > end) return;
-    }
-    const double sBegin = sFrom + begin * sPath;
-    const double sEnd = sFrom + end * sPath;
+    Interval part;
+    if (!part.keepBelow(low - along, -step) || !part.keepBelow(along - high, step)) return;
+    const double sBegin = sFrom + part.begin * sPath;
+    const double sEnd = sFrom + part.end * sPath;
     if (sBegin < -skin_) return;  // from behind: the path enters, if it does, elsewhere
     if (exact_ && sBegin < 0.5 * skin_) {
       const bool deeper = sEnd < sBegin - rounding_ && orientation(e.a, e.b, from_) > 0;
-      if (deeper || crossesExactly(index, e)) keep({true, begin, index, false});
+      if (deeper || crossesExactly(index, e)) keep({true, part.begin, index, false});
       return;
     }
     if (curved_) {
@@ -75,33 +81,40 @@ class ContactSearch {
     } else if (sEnd >= (sBegin >= near_ ? near_ : sBegin - rounding_)) {
       return;
     }
-    const double time = sBegin > reach_ ? begin + (end - begin) * ((sBegin - reach_) / (sBegin - sEnd)) : begin;
-    keep({true, time, index, false});
+    const double into = sBegin > reach_ ? (sBegin - reach_) / (sBegin - sEnd) : 0.0;
+    keep({true, part.begin + into * (part.end - part.begin), index, false});
   }
 
-  /// The convex vertex at the start of the edge.
+  /// The convex vertex at the start of the edge, over the part of the path that lies beyond both of its edges' strips.
+  /// That part is taken a rounding wider than it is, so that nothing slips between.
   void testStart(std::uint32_t index, const GridEdge& e, const Vec2& arm) {
-    const double a = path_.squaredNorm();
-    const double b = arm.dot(path_);  // half the derivative of the squared distance at the start
-    const double start = arm.norm();
-    const double closestTime = a > 0.0 ? std::clamp(-b / a, 0.0, 1.0) : 0.0;
-    const double closest = (arm + closestTime * path_).norm();
-    if (start > reach_) {
-      if (closest >= (curved_ ? reach_ : near_)) return;
-      const double root = std::sqrt(std::max(0.0, b * b - a * (start - reach_) * (start + reach_)));
-      keep({true, std::clamp((start - reach_) * (start + reach_) / (root - b), 0.0, closestTime), index, true});
+    const GridEdge& before = grid_.edges()[static_cast<std::size_t>(e.previous)];
+    Interval part;
+    if (!part.keepBelow(e.direction.dot(arm) - rounding_, e.direction.dot(path_)) ||
+        !part.keepBelow(-before.direction.dot(arm) - rounding_, -before.direction.dot(path_))) {
       return;
     }
-    if (exact_ && start < 0.5 * skin_) return;                        // decided with the edges
-    if (e.direction.dot(arm) > 0.0 || beforeEnd(e.previous)) return;  // beside an edge, not over the vertex
-    if (curved_ ? b < 4.0 * slack_ * start : closest < (start >= near_ ? near_ : start - rounding_)) {
-      keep({true, 0.0, index, true});
+    const Vec2 armBegin = arm + part.begin * path_;
+    const double begin = armBegin.norm();
+    if (exact_ && begin < 0.5 * skin_) return;  // decided with the edges
+    const double length = path_.norm();
+    if (length == 0.0) return;
+    const double derivative = armBegin.dot(path_) / length;
+    if (begin <= reach_ && curved_) {
+      if (derivative * length < 4.0 * slack_) keep({true, part.begin, index, true});
+      return;
     }
-  }
-
-  bool beforeEnd(std::int32_t previous) const {
-    const GridEdge& e = grid_.edges()[static_cast<std::size_t>(previous)];
-    return e.direction.dot(from_ - e.b) < 0.0;
+    const double passing = std::abs(cross(path_, arm)) / length;
+    const double passingTime = -arm.dot(path_) / (length * length);
+    double closest = begin;
+    if (derivative < 0.0) closest = passingTime <= part.end ? passing : (arm + part.end * path_).norm();
+    if (begin > reach_) {
+      if (closest >= (curved_ ? reach_ : near_)) return;
+      const double half = std::sqrt(std::max(0.0, (reach_ - passing) * (reach_ + passing))) / length;
+      keep({true, std::clamp(passingTime - half, part.begin, part.end), index, true});
+    } else if (closest < (begin >= near_ ? near_ : begin - rounding_)) {
+      keep({true, part.begin, index, true});
+    }
   }
 
   /// True if the path passes from outside, or from the boundary, through this edge or one of its ends to the inside.

@@ -169,6 +169,7 @@ FieldSample EdgeGrid::searchRings(const Vec2& p, double clearance) const {
 }
 
 FieldSample EdgeGrid::makeSample(const Vec2& p, std::uint32_t index, bool inside) const {
+  if (p == edges_[index].b && next_[index] >= 0) index = static_cast<std::uint32_t>(next_[index]);
   const GridEdge& e = edges_[index];
   FieldSample sample;
   sample.exact = true;
@@ -189,9 +190,9 @@ FieldSample EdgeGrid::makeSample(const Vec2& p, std::uint32_t index, bool inside
     double left = cross(e.direction, arm);
     if (std::abs(left) <= rounding_ && orientation(e.a, e.b, p) == 0) left = 0.0;
     sample.feature = arm == Vec2(0.0, 0.0) ? FeatureKind::StartVertex : FeatureKind::Edge;
-    sample.closest = p + left * e.normal();
     sample.distance = sign * std::abs(left);
     sample.normal = e.normal();
+    sample.closest = p - sample.distance * sample.normal;
     if (sample.feature == FeatureKind::Edge) return sample;
   }
   const Vec2 before = e.previous >= 0 ? edges_[static_cast<std::size_t>(e.previous)].normal() : e.normal();

@@ -48,13 +48,15 @@ struct EdgeGrid::Nearest {
     const double gap = inside - outside;
     const double doubt = rounding * rounding * std::max(nearer, rounding * rounding);
     bool isInside = gap < 0.0;
+    bool byInside = isInside;  // which of the two features answers
     if (gap * gap <= 4.0 * doubt) {
-      isInside = grid.contains(source, p);
+      isInside = byInside = grid.contains(source, p);
     } else if (nearer <= rounding * rounding) {
       isInside = onTheSpot(isInside ? insideEdge : outsideEdge, source);
     }
-    const double value = isInside ? -nearer : nearer;
-    const std::uint32_t edge = inside < outside ? insideEdge : outsideEdge;
+    const double square = byInside ? inside : outside;
+    const double value = isInside ? -square : square;
+    const std::uint32_t edge = byInside ? insideEdge : outsideEdge;
     if (!any || value < best) best = value, bestEdge = edge;
     any = true;
     inside = outside = kInfinity;

@@ -24,7 +24,8 @@ Polygon Polygon::make(std::vector<Vec2> outer, std::vector<std::vector<Vec2>> ho
   }
   polygon.link();
   polygon.measure();
-  if (!(polygon.area_ >= std::numeric_limits<double>::min()) || !std::isfinite(polygon.secondMoment_)) {
+  constexpr double kLeast = std::numeric_limits<double>::min();
+  if (!(polygon.area_ >= kLeast && polygon.secondMoment_ >= kLeast && std::isfinite(polygon.secondMoment_))) {
     throw PolygonError(PolygonError::Reason::ZeroArea,
                        "the area or its second moment is not a normal number; give coordinates in metres");
   }

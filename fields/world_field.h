@@ -100,7 +100,7 @@ class WorldField {
   WorldSample withBody(const FieldSample& sample) const;
 
   std::vector<FieldEdge> edges_;
-  std::vector<Source> sources_;  // one a polygon, after the walls (source 0)
+  std::vector<Source> sources_;           // one a polygon, after the walls (source 0)
   std::vector<CollisionFilter> filters_;  // the different pairs of bits among the polygons
   double band_;
   detail::EdgeGrid grid_;

@@ -40,7 +40,8 @@ inline std::vector<Vec2> convex(RandomStream& random) {
 inline std::vector<Vec2> star(RandomStream& random) {
   const int n = 5 + static_cast<int>(random.below(20));
   std::vector<Vec2> ring;
-  for (int i = 0; i < n; ++i) ring.push_back(polar(random.uniform(0.05, 0.6), 2.0 * kPi * (i + random.uniform(0, 0.5)) / n));
+  for (int i = 0; i < n; ++i)
+    ring.push_back(polar(random.uniform(0.05, 0.6), 2.0 * kPi * (i + random.uniform(0, 0.5)) / n));
   return ring;
 }
 
@@ -88,7 +89,8 @@ inline std::vector<Vec2> koch(RandomStream& random) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vec2& a = ring[i];
       const Vec2 third = (ring[(i + 1) % ring.size()] - a) / 3.0;
-      finer.insert(finer.end(), {a, a + third, a + 1.5 * third + std::sqrt(0.75) * rightNormal(third), a + 2.0 * third});
+      finer.insert(finer.end(),
+                   {a, a + third, a + 1.5 * third + std::sqrt(0.75) * rightNormal(third), a + 2.0 * third});
     }
     ring = finer;
   }
@@ -99,7 +101,8 @@ inline std::vector<Vec2> koch(RandomStream& random) {
 inline std::vector<Vec2> needle(RandomStream& random) {
   const double half = 0.5 * std::pow(10.0, random.uniform(-6.0, -3.0));
   const double x = random.uniform(-0.2, 0.2);
-  std::vector<Vec2> ring{{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.0}, {x + half, 0.0}, {x, random.uniform(0.5, 1.0)}, {x - half, 0.0}};
+  std::vector<Vec2> ring{{-0.3, -0.3},   {0.3, -0.3}, {0.3, 0.0}, {x + half, 0.0}, {x, random.uniform(0.5, 1.0)},
+                         {x - half, 0.0}};
   if (random.below(2) == 0) {
     ring.emplace_back(-0.3, 0.0);
   } else {
@@ -119,7 +122,9 @@ inline std::vector<Vec2> plate(RandomStream& random) {
       return {{0.0, 0.0}, {length, 0.0}, {length, kThickness}, {kThickness, kThickness}, {kThickness, 0.5}, {0.0, 0.5}};
     default: {
       const double rise = random.uniform(0.02, 0.6);
-      return {{-0.5, rise}, {0.0, 0.0}, {0.5, rise}, {0.5, rise + kThickness}, {0.0, kThickness}, {-0.5, rise + kThickness}};
+      return {{-0.5, rise},      {0.0, 0.0},
+              {0.5, rise},       {0.5, rise + kThickness},
+              {0.0, kThickness}, {-0.5, rise + kThickness}};
     }
   }
 }
@@ -148,13 +153,27 @@ inline void ring(RandomStream& random, Outline* outline) {
 inline Outline makeOutline(Shape shape, RandomStream& random) {
   Outline outline;
   switch (shape) {
-    case Shape::Convex: outline = {"convex", generator::convex(random), {}}; break;
-    case Shape::Star: outline = {"star", generator::star(random), {}}; break;
-    case Shape::Comb: outline = {"comb", generator::comb(random), {}}; break;
-    case Shape::Spiral: outline = {"spiral", generator::spiral(random), {}}; break;
-    case Shape::Koch: outline = {"koch", generator::koch(random), {}}; break;
-    case Shape::Needle: outline = {"needle", generator::needle(random), {}}; break;
-    case Shape::Plate: outline = {"plate", generator::plate(random), {}}; break;
+    case Shape::Convex:
+      outline = {"convex", generator::convex(random), {}};
+      break;
+    case Shape::Star:
+      outline = {"star", generator::star(random), {}};
+      break;
+    case Shape::Comb:
+      outline = {"comb", generator::comb(random), {}};
+      break;
+    case Shape::Spiral:
+      outline = {"spiral", generator::spiral(random), {}};
+      break;
+    case Shape::Koch:
+      outline = {"koch", generator::koch(random), {}};
+      break;
+    case Shape::Needle:
+      outline = {"needle", generator::needle(random), {}};
+      break;
+    case Shape::Plate:
+      outline = {"plate", generator::plate(random), {}};
+      break;
     case Shape::Ring:
       outline.name = "ring";
       generator::ring(random, &outline);
