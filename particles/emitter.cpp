@@ -43,7 +43,11 @@ void check(const EmitterDef& def, double spacing) {
 }  // namespace
 
 Emitter::Emitter(EmitterDef def, double spacing, std::uint64_t seed, std::uint64_t index)
-    : def_(std::move(def)), spacing_(spacing), seed_(seed), index_(index) {
+    : def_(std::move(def)),
+      section_(def_.name + "." + std::to_string(index)),
+      spacing_(spacing),
+      seed_(seed),
+      index_(index) {
   check(def_, spacing);
   const Vec2 along = def_.to - def_.from;
   direction_ = leftNormal(along).normalized();
@@ -113,7 +117,7 @@ std::size_t Emitter::emit(double t0, double dt, Place place, std::size_t room) {
 }
 
 void Emitter::archive(Archive& archive) {
-  archive.beginSection(def_.name);
+  archive.beginSection(section_);
   archive.value("events", nextEvent_);
   archive.value("refused", refused_);
   archive.endSection();

@@ -80,6 +80,7 @@ class Emitter {
   Span due(double t0, double dt) const;
 
   EmitterDef def_;
+  std::string section_;  ///< of the saved state; unique although two emitters may share a name
   double spacing_;
   double interval_;  ///< between events [s]
   Vec2 direction_;   ///< unit vector of the flow
