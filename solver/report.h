@@ -15,6 +15,7 @@ enum class StepLimit : int {
   Literal,       // `time_step` of the scene
   Courant,       // v·dt against the support radius
   Acceleration,  // √(support radius / acceleration)
+  Pressure,      // dx/√(p/ρ): the stiffness of the particles' arrangement under pressure
   Viscosity,     // dx²/ν
   Spin,          // ω·dt ≤ 0.5 rad of a body
   Wall,          // a moving polygon's travel against the support radius

@@ -75,7 +75,7 @@ StepBound World::Impl::chooseStep(double maxDt) const {
   if (def.timeStep) return {*def.timeStep, StepLimit::Literal};
   StepBound bound{kFreeStep, StepLimit::Requested};
   if (fluidModel != nullptr) {
-    const StepBound fluidBound = fluidModel->stepBound(present.maxSpeed, gravityScale);
+    const StepBound fluidBound = fluidModel->stepBound(*fluid, present.maxSpeed, gravityScale);
     bound.tighten(fluidBound.dt, fluidBound.limit);
   }
   if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, gravityScale), StepLimit::Bullet);

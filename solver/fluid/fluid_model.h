@@ -26,8 +26,8 @@ class FluidModel {
   virtual double supportRadius() const = 0;
   /// Mass of a particle [kg/m].
   virtual double particleMass() const = 0;
-  /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over the fluid.
-  virtual StepBound stepBound(double maxSpeed, double gravity) const = 0;
+  /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over all particles.
+  virtual StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const = 0;
   /// One sub-step: velocities and positions to the end of it. The pool comes out sorted by cell.
   virtual void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) = 0;
   virtual std::size_t memoryBytes() const = 0;

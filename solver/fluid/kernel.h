@@ -1,7 +1,10 @@
-// The kernel in two dimensions, in units of the particle spacing dx: W = (5/4π)(1 − q²/4)⁴ for q = r/dx < 2.
-// Why this one: it is a polynomial in q², so that a pair costs no square root and a wall no logarithm; the bell is within
-// 2 % of the cubic spline's of the same support; and on a square lattice of spacing 1 it sums to 1.0010 (hexagonal: 1.010),
-// so that a particle's mass density·dx² gives the rest density without a fitted factor. See docs/decisions/.
+// The kernel in two dimensions, in units of the particle spacing dx: with m = 1 − q²/4, q = r/dx < 2,
+//     w = (4/5)·(5/4π)·m⁴ + (1/5)·(11/4π)·m¹⁰ = m⁴ (1 + 0.55 m⁶)/π,     ∫ w dA = 1.
+// Why this one: it is a polynomial in q², so that a pair costs no square root and a wall no logarithm. m⁴ alone has a
+// negative lobe in its Fourier transform, and particles pair up under pressure (seen: bottom corners of a tank at rest);
+// a fifth of m¹⁰ makes it positive, as Wendland's kernels are. On the square lattice of spacing 1 it sums to 1.0160, on the
+// hexagonal one of the same density to 1.0178: the sum over particles is divided by their mean, so that a particle's mass
+// density·dx² gives the rest density in both. See docs/decisions/.
 #pragma once
 
 #include <froude/base/types.h>
@@ -10,19 +13,24 @@ namespace froude::kernel {
 
 /// Support radius in spacings.
 inline constexpr double kSupport = 2.0;
-/// Normalisation in two dimensions: ∫ W dA = 1.
-inline constexpr double kNorm = 5.0 / (4.0 * kPi);
+/// Sum over the lattices named above, for particles; walls are integrals and have none.
+inline constexpr double kLatticeSum = 1.0169;
+/// Factor of the shape m⁴ (1 + kTail m⁶) for particles.
+inline constexpr double kNorm = 1.0 / (kPi * kLatticeSum);
+inline constexpr double kTail = 0.55;
 
 /// W at the squared distance q2, in spacings squared [1/dx²].
 inline double value(double q2) {
   const double m = 1.0 - 0.25 * q2;
-  return m > 0.0 ? kNorm * (m * m) * (m * m) : 0.0;
+  const double m2 = m * m;
+  return m > 0.0 ? kNorm * m2 * m2 * (1.0 + kTail * m2 * m2 * m2) : 0.0;
 }
 
 /// (dW/dq)/q at the squared distance q2 [1/dx⁴]: the gradient is this times the vector of the pair in spacings.
 inline double gradientFactor(double q2) {
   const double m = 1.0 - 0.25 * q2;
-  return m > 0.0 ? -2.0 * kNorm * m * m * m : 0.0;
+  const double m3 = m * m * m;
+  return m > 0.0 ? -2.0 * kNorm * m3 * (1.0 + 2.5 * kTail * m3 * m3) : 0.0;
 }
 
 }  // namespace froude::kernel

@@ -40,11 +40,13 @@ struct DensityLoop {
   float* diagonal = nullptr;              // may be null
 };
 
-/// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it.
+/// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it. Behind the wall the
+/// pressure rises along it as in front: of the component along the wall the share λ is missing and is made up for.
 struct DisplacementLoop {
   const float* pressure = nullptr;        // κ = p·dt²/(ρ dx²), no unit
   const float* wallX = nullptr;           // null: no walls
   const float* wallY = nullptr;
+  const float* tangent = nullptr;         // λ/((1 − λ)·|g|²)
   float* shiftX = nullptr;                // in and out
   float* shiftY = nullptr;
   std::int32_t* newX = nullptr;           // written: PairFrame::x plus the new displacement

@@ -40,13 +40,15 @@ void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end,
 }
 
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
+constexpr auto kTail = static_cast<float>(kernel::kTail);
 
 void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sum = 0.0f, sx = 0.0f, sy = 0.0f, squares = 0.0f;
     forEachPair(frame, cell, i, [&](std::uint32_t, float dx, float dy, float m) {
-      sum += m * m * (m * m);
-      const float f = m * m * m;
+      const float m3 = m * m * m;
+      sum += m3 * m * (1.0f + kTail * (m3 * m3));
+      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
       sx += f * dx;
       sy += f * dy;
       squares += f * f * (dx * dx + dy * dy);
@@ -71,14 +73,17 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
     float sx = 0.0f, sy = 0.0f;
     const float own = loop.pressure[i];
     forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
-      const float f = (own + loop.pressure[j]) * (m * m * m);
+      const float m3 = m * m * m;
+      const float f = (own + loop.pressure[j]) * (m3 * (1.0f + 2.5f * kTail * (m3 * m3)));
       sx += f * dx;
       sy += f * dy;
     });
     float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
     if (loop.wallX != nullptr) {
-      moveX -= 2.0f * own * loop.wallX[i];
-      moveY -= 2.0f * own * loop.wallY[i];
+      const float gx = loop.wallX[i], gy = loop.wallY[i];
+      const float along = loop.tangent[i] * (gx * moveY - gy * moveX);
+      moveX -= 2.0f * own * gx + along * gy;
+      moveY -= 2.0f * own * gy - along * gx;
     }
     loop.shiftX[i] += moveX;
     loop.shiftY[i] += moveY;
@@ -92,7 +97,10 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
     float sx = 0.0f, sy = 0.0f;
     const float vx = loop.vx[i], vy = loop.vy[i];
     forEachPair(frame, cell, i, [&](std::uint32_t j, float, float, float m) {
-      const float weight = kNorm * (m * m * m) * (loop.a * m + 2.0f * loop.b);
+      const float m3 = m * m * m;
+      const float m6 = m3 * m3;
+      const float weight =
+          kNorm * m3 * (loop.a * m * (1.0f + kTail * m6) + 2.0f * loop.b * (1.0f + 2.5f * kTail * m6));
       sx += weight * (loop.vx[j] - vx);
       sy += weight * (loop.vy[j] - vy);
     });

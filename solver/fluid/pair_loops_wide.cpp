@@ -8,6 +8,11 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+// A lambda of an inner loop, which must become part of the loop.
+#ifndef FROUDE_INLINE
+#define FROUDE_INLINE HWY_ATTR __attribute__((always_inline))
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace froude {
 namespace HWY_NAMESPACE {
@@ -21,45 +26,79 @@ using VI = hn::Vec<I>;
 
 constexpr float kUnit = 1.0f / static_cast<float>(lattice::kUnitsPerSpacing);
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
+constexpr auto kTail = static_cast<float>(kernel::kTail);
+
+// The kernel without its factor, from m and m³.
+HWY_INLINE VF shapeOf(VF m, VF m3) {
+  const F f;
+  return hn::Mul(hn::Mul(m3, m), hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, kTail), hn::Set(f, 1.0f)));
+}
+
+// The gradient's factor without −2·kNorm, from m³.
+HWY_INLINE VF slopeOf(VF m3) {
+  const F f;
+  return hn::Mul(m3, hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, 2.5f * kTail), hn::Set(f, 1.0f)));
+}
+
+// The candidates of a cell's particles: runs of indices and what to take off the asking particle's coordinates.
+struct Runs {
+  struct Run {
+    std::uint32_t begin, end;
+    std::int32_t shiftX, shiftY;
+  };
+  std::uint32_t count = 0;
+  Run run[9];
+};
+
+HWY_INLINE void collectRuns(const PairFrame& frame, std::uint32_t cell, Runs& runs) {
+  runs.count = 0;
+  frame.grid->forEachRun(cell, [&](const CellRun& r) {
+    const std::int32_t shiftX = r.shiftX > 0.0 ? frame.periodX : r.shiftX < 0.0 ? -frame.periodX : 0;
+    const std::int32_t shiftY = r.shiftY > 0.0 ? frame.periodY : r.shiftY < 0.0 ? -frame.periodY : 0;
+    runs.run[runs.count++] = {r.begin, r.end, shiftX, shiftY};
+  });
+}
 
 // Candidates of one particle, a vector at a time: pair(j, dx, dy, m) with dx, dy in lattice units and m = max(0, 1 − q²/4),
-// 0 in lanes that hold no visible neighbour.
+// 0 in lanes that hold no visible neighbour. Inlined by force: a call for each vector would cost as much as the vector.
 template <typename Pair>
-HWY_INLINE void forEachVector(const PairFrame& frame, std::uint32_t cell, std::uint32_t i, Pair&& pair) {
+HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uint32_t i, const Pair& pair) {
   const F f;
   const I n;
   const auto lanes = static_cast<std::uint32_t>(hn::Lanes(f));
   const VF one = hn::Set(f, 1.0f);
   const VF minusQuarter = hn::Set(f, -0.25f * kUnit * kUnit);
-  std::int32_t word = frame.hidden.offset != nullptr ? frame.hidden.offset[i] : -1;
-  frame.grid->forEachRun(cell, [&](const CellRun& run) HWY_ATTR {
-    const std::int32_t shiftX = run.shiftX > 0.0 ? frame.periodX : run.shiftX < 0.0 ? -frame.periodX : 0;
-    const std::int32_t shiftY = run.shiftY > 0.0 ? frame.periodY : run.shiftY < 0.0 ? -frame.periodY : 0;
-    const VI xi = hn::Set(n, lattice::difference(frame.x[i], shiftX));
-    const VI yi = hn::Set(n, lattice::difference(frame.y[i], shiftY));
+  const std::int32_t hidden = frame.hidden.offset != nullptr ? frame.hidden.offset[i] : -1;
+  const std::uint64_t* words = frame.hidden.words + (hidden >= 0 ? hidden : 0);
+  for (std::uint32_t r = 0; r < runs.count; ++r) {
+    const Runs::Run& run = runs.run[r];
+    const VI xi = hn::Set(n, lattice::difference(frame.x[i], run.shiftX));
+    const VI yi = hn::Set(n, lattice::difference(frame.y[i], run.shiftY));
     for (std::uint32_t j = run.begin; j < run.end; j += lanes) {
       const VF dx = hn::ConvertTo(f, hn::Sub(xi, hn::LoadU(n, frame.x + j)));
       const VF dy = hn::ConvertTo(f, hn::Sub(yi, hn::LoadU(n, frame.y + j)));
       const VF q2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
       VF m = hn::Max(hn::MulAdd(q2, minusQuarter, one), hn::Zero(f));
       m = hn::IfThenElseZero(hn::FirstN(f, run.end - j), m);
-      if (HWY_UNLIKELY(word >= 0)) {
+      if (HWY_UNLIKELY(hidden >= 0)) {
         const std::uint32_t k = j - run.begin;
-        std::uint64_t bits = frame.hidden.words[static_cast<std::uint32_t>(word) + k / 64] >> (k % 64);
+        const std::uint64_t bits = words[k / 64] >> (k % 64);
         m = hn::IfThenElseZero(hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits)), m);
       }
       pair(j, dx, dy, m);
     }
-    if (HWY_UNLIKELY(word >= 0)) word += static_cast<std::int32_t>((run.end - run.begin + 63) / 64);
-  });
+    if (HWY_UNLIKELY(hidden >= 0)) words += (run.end - run.begin + 63) / 64;
+  }
 }
 
 template <typename Particle>
-HWY_INLINE void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end, Particle&& particle) {
+HWY_INLINE void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end, const Particle& particle) {
   const std::uint32_t* start = frame.grid->cellStart().data();
+  Runs runs;
   for (std::size_t c = begin; c < end; ++c) {
     const std::uint32_t cell = frame.cells[c];
-    for (std::uint32_t i = start[cell]; i < start[cell + 1]; ++i) particle(cell, i);
+    collectRuns(frame, cell, runs);
+    for (std::uint32_t i = start[cell]; i < start[cell + 1]; ++i) particle(runs, i);
   }
 }
 
@@ -70,7 +109,7 @@ HWY_INLINE float sumOf(VF v) {
 
 void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) HWY_ATTR {
+  forEachParticle(frame, begin, end, [&](const Runs& runs, std::uint32_t i) FROUDE_INLINE {
     float wall = 0.0f, gx = 0.0f, gy = 0.0f;
     if (loop.lambda != nullptr) {
       gx = loop.wallX[i];
@@ -79,19 +118,18 @@ void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin,
     }
     VF sum = hn::Zero(f);
     if (loop.diagonal == nullptr) {
-      forEachVector(frame, cell, i, [&](std::uint32_t, VF, VF, VF m) HWY_ATTR {
-        const VF m2 = hn::Mul(m, m);
-        sum = hn::MulAdd(m2, m2, sum);
+      forEachVector(frame, runs, i, [&](std::uint32_t, VF, VF, VF m) FROUDE_INLINE {
+        sum = hn::Add(sum, shapeOf(m, hn::Mul(m, hn::Mul(m, m))));
       });
       loop.density[i] = kNorm * sumOf(sum) + wall;
       return;
     }
     VF sx = hn::Zero(f), sy = hn::Zero(f), squares = hn::Zero(f);
-    forEachVector(frame, cell, i, [&](std::uint32_t, VF dx, VF dy, VF m) HWY_ATTR {
-      const VF m2 = hn::Mul(m, m);
-      sum = hn::MulAdd(m2, m2, sum);
-      const VF m3 = hn::Mul(m2, m);
-      const VF px = hn::Mul(m3, dx), py = hn::Mul(m3, dy);
+    forEachVector(frame, runs, i, [&](std::uint32_t, VF dx, VF dy, VF m) FROUDE_INLINE {
+      const VF m3 = hn::Mul(m, hn::Mul(m, m));
+      sum = hn::Add(sum, shapeOf(m, m3));
+      const VF slope = slopeOf(m3);
+      const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
       sx = hn::Add(sx, px);
       sy = hn::Add(sy, py);
       squares = hn::MulAdd(px, px, hn::MulAdd(py, py, squares));
@@ -106,20 +144,22 @@ void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin,
 
 void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) HWY_ATTR {
+  forEachParticle(frame, begin, end, [&](const Runs& runs, std::uint32_t i) FROUDE_INLINE {
     const float own = loop.pressure[i];
     const VF ownPressure = hn::Set(f, own);
     VF sx = hn::Zero(f), sy = hn::Zero(f);
-    forEachVector(frame, cell, i, [&](std::uint32_t j, VF dx, VF dy, VF m) HWY_ATTR {
+    forEachVector(frame, runs, i, [&](std::uint32_t j, VF dx, VF dy, VF m) FROUDE_INLINE {
       const VF both = hn::Add(ownPressure, hn::LoadU(f, loop.pressure + j));
-      const VF weight = hn::Mul(hn::Mul(both, m), hn::Mul(m, m));
+      const VF weight = hn::Mul(both, slopeOf(hn::Mul(m, hn::Mul(m, m))));
       sx = hn::MulAdd(weight, dx, sx);
       sy = hn::MulAdd(weight, dy, sy);
     });
     float unitsX = 2.0f * kNorm * sumOf(sx), unitsY = 2.0f * kNorm * sumOf(sy);
     if (loop.wallX != nullptr) {
-      unitsX -= 2.0f / kUnit * own * loop.wallX[i];
-      unitsY -= 2.0f / kUnit * own * loop.wallY[i];
+      const float gx = loop.wallX[i], gy = loop.wallY[i];
+      const float along = loop.tangent[i] * (gx * unitsY - gy * unitsX);
+      unitsX -= 2.0f / kUnit * own * gx + along * gy;
+      unitsY -= 2.0f / kUnit * own * gy - along * gx;
     }
     loop.shiftX[i] += unitsX * kUnit;
     loop.shiftY[i] += unitsY * kUnit;
@@ -131,11 +171,12 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
 void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   const VF a = hn::Set(f, loop.a), twiceB = hn::Set(f, 2.0f * loop.b);
-  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) HWY_ATTR {
+  forEachParticle(frame, begin, end, [&](const Runs& runs, std::uint32_t i) FROUDE_INLINE {
     const VF vx = hn::Set(f, loop.vx[i]), vy = hn::Set(f, loop.vy[i]);
     VF sx = hn::Zero(f), sy = hn::Zero(f);
-    forEachVector(frame, cell, i, [&](std::uint32_t j, VF, VF, VF m) HWY_ATTR {
-      const VF weight = hn::Mul(hn::Mul(m, hn::Mul(m, m)), hn::MulAdd(a, m, twiceB));
+    forEachVector(frame, runs, i, [&](std::uint32_t j, VF, VF, VF m) FROUDE_INLINE {
+      const VF m3 = hn::Mul(m, hn::Mul(m, m));
+      const VF weight = hn::MulAdd(a, shapeOf(m, m3), hn::Mul(twiceB, slopeOf(m3)));
       sx = hn::MulAdd(weight, hn::Sub(hn::LoadU(f, loop.vx + j), vx), sx);
       sy = hn::MulAdd(weight, hn::Sub(hn::LoadU(f, loop.vy + j), vy), sy);
     });

@@ -1,5 +1,6 @@
 #include <froude/solver/fluid/pbf.h>
 
+#include <cstdlib>
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
@@ -11,7 +12,10 @@ namespace {
 // Defaults, chosen by docs/decisions/solver-pbf-sweeps.md.
 constexpr double kCourant = 0.25;        // of the support radius a sub-step
 constexpr int kSweeps = 5;
-constexpr double kRelaxation = 0.6;      // of a Jacobi sweep
+#define EV(n,d) (std::getenv(n)?std::atof(std::getenv(n)):d)
+const float BETA=EV("BETA",0.05), DELTA=EV("DELTA",0.02);
+const double KMAX = EV("KMAX",0.3);
+const double kRelaxation = EV("OMEGA",0.6);      // of a Jacobi sweep
 constexpr float kSmallestDiagonal = 0.05f;  // a particle with no neighbours has none
 constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
 constexpr float kSmoothing = 0.01f;      // XSPH, the paper's c (eq. 17)
@@ -35,13 +39,24 @@ double Pbf::supportRadius() const { return kernel::kSupport * dx_; }
 double Pbf::particleMass() const { return def_.density * dx_ * dx_; }
 double Pbf::pressureUnit(double dt) const { return dt * dt / (dx_ * dx_); }
 
-StepBound Pbf::stepBound(double maxSpeed, double gravity) const {
+StepBound Pbf::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound;
   const double support = supportRadius();
   if (maxSpeed > 0.0) bound.tighten(courant_ * support / maxSpeed, StepLimit::Courant);
   if (gravity > 0.0) bound.tighten(0.25 * std::sqrt(support / gravity), StepLimit::Acceleration);
+  const double most = largestPressure(pool);
+  if (most > 0.0) bound.tighten(std::sqrt(KMAX / most) * dx_, StepLimit::Pressure);
   if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
   return bound;
+}
+
+double Pbf::largestPressure(const ParticlePool& pool) const {
+  const auto pressure = pool.column(pressure_);
+  return parallelMax(pool.size(), 0.0, [&](std::size_t begin, std::size_t end) {
+    float most = 0.0f;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, pressure[i]);
+    return static_cast<double>(most);
+  });
 }
 
 void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
@@ -134,7 +149,7 @@ void Pbf::runDensity(const StepContext& context, float* density, float* diagonal
 void Pbf::runDisplacement(const StepContext& context, const float* pressure) {
   const PairFrame pairs = frame();
   const DisplacementLoop loop{pressure, walls_.any() ? walls_.gradientX() : nullptr, walls_.gradientY(),
-                              shiftX_.data(), shiftY_.data(), nextX_.data(), nextY_.data()};
+                              walls_.tangent(), shiftX_.data(), shiftY_.data(), nextX_.data(), nextY_.data()};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
@@ -154,19 +169,21 @@ void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
 void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   const auto density = pool.column(density_), allowance = pool.column(allowance_), pressure = pool.column(pressure_);
   const std::size_t n = pool.size();
-  const float forget = std::exp(-1.0f / kForgetSteps);
+  const float beta = std::min(1.0, BETA * std::sqrt(pressureUnit(context.dt) * std::max(largestPressure(pool), 0.1 * dx_ * 9.81)));
   for (int sweep = 0;; ++sweep) {
     const bool first = sweep == 0;
     if (first) {  // a density of 0 marks a particle that is new
       parallelFor(n, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) allowance[i] = density[i] == 0.0f ? -1.0f : forget * allowance[i];
+        for (std::size_t i = begin; i < end; ++i) {
+          allowance[i] = density[i] == 0.0f ? -2.0f : (1.0f - beta) * std::max(density[i] - 1.0f, -DELTA);
+        }
       });
     }
     runDensity(context, density.data(), first ? diagonal_.data() : nullptr);
     if (sweep == sweeps_) break;
     parallelFor(n, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (allowance[i] < 0.0f) allowance[i] = std::max(0.0f, density[i] - 1.0f);
+        if (allowance[i] == -2.0f) allowance[i] = std::max(0.0f, density[i] - 1.0f);
         const float excess = density[i] - 1.0f - allowance[i];
         const float next = std::max(0.0f, kappa_[i] + static_cast<float>(kRelaxation) * excess /
                                                           std::max(diagonal_[i], kSmallestDiagonal));
@@ -230,13 +247,18 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   for (const std::uint32_t n : crushed_) stats.crushed += n;
   for (const std::uint32_t n : leaks_) stats.leaks += n;
   contacts_.book(particleMass(), impulses);
-  // The pressure on the walls: each sweep moved its particle by −2κg.
-  const double impulse = 2.0 * particleMass() * dx_ / dt;
+  // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did there.
+  const double unit = particleMass() * dx_ / dt;
   walls_.forEachLink([&](const WallLink& link) {
-    const double k = impulse * static_cast<double>(kappa_[link.particle]);
-    const Vec2 at(x[link.particle], y[link.particle]);
-    impulses.add(link.owner, at, {k * static_cast<double>(link.gradientX), k * static_cast<double>(link.gradientY)},
-                 context.obstacles.velocityAt(link.owner, at));
+    const std::uint32_t i = link.particle;
+    const Vec2 gradient(link.gradientX, link.gradientY);
+    Vec2 impulse = 2.0 * unit * static_cast<double>(kappa_[i]) * gradient;
+    if (walls_.tangent()[i] > 0.0f) {
+      const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
+      impulse -= unit * static_cast<double>(link.lambda) * along.dot(Vec2(shiftX_[i], shiftY_[i])) * along;
+    }
+    const Vec2 at(x[i], y[i]);
+    impulses.add(link.owner, at, impulse, context.obstacles.velocityAt(link.owner, at));
   });
 }
 

@@ -20,7 +20,7 @@ class Pbf final : public FluidModel {
 
   double supportRadius() const override;
   double particleMass() const override;
-  StepBound stepBound(double maxSpeed, double gravity) const override;
+  StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) override;
   std::size_t memoryBytes() const override;
 
@@ -41,6 +41,7 @@ class Pbf final : public FluidModel {
   void runDensity(const StepContext& context, float* density, float* diagonal);
   void runDisplacement(const StepContext& context, const float* pressure);
   void resizeScratch(std::size_t n);
+  double largestPressure(const ParticlePool& pool) const;  // p/ρ [m²/s²]
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
 
   FluidDef def_;

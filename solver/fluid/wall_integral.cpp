@@ -8,39 +8,40 @@
 namespace froude {
 namespace {
 
-using kernel::kNorm;
 constexpr double kReach = kernel::kSupport;
+constexpr double kShare4 = 0.8, kShare10 = 0.2;  // of m⁴ and m¹⁰ in the kernel, each normalised
 
-// Antiderivatives along the line of an edge at distance d from the origin; s is measured from the foot of the
-// perpendicular, M = 1 − d²/4, and r² = d² + s². With this kernel 1/2π − G(r) = (1 − r²/4)⁵/2π.
+// B_k = ∫ m^k ds and A_k = ∫ m^k dθ (dθ = d·ds/r²) along the line of an edge at distance d from the origin; s is measured
+// from the foot of the perpendicular, r² = d² + s², m = 1 − r²/4 = M − s²/4. By parts and by splitting off one factor m:
+//     B_k = (s·m^k + 2kM·B_{k−1})/(2k + 1),   A_k = A_{k−1} − (d/4)·B_{k−1}.
 struct LineIntegrals {
-  double kernel;  // ∫ (1 − r²/4)⁴ ds
-  double angle;   // ∫ (1 − r²/4)⁵ dθ, dθ = d·ds/r²
+  double kernel;  // ∫ w ds
+  double angle;   // ∫ (1 − 2πG) dθ, 1 − 2πG(r) = 0.8 m⁵ + 0.2 m¹¹
 };
 
-LineIntegrals lineIntegrals(double d, double s) {
-  const double u = s * s;
-  const double v = d * d;
-  const double m = 1.0 - 0.25 * v;
-  const double kernel =
-      s * (m * m * m * m + u * (-m * m * m / 3.0 + u * (3.0 * m * m / 40.0 + u * (-m / 112.0 + u / 2304.0))));
-  // (1 − r²/4)⁵/r² = 1/r² − 5/4 + 5r²/8 − 5r⁴/32 + 5r⁶/256 − r⁸/1024, each power of r² = v + u integrated over s.
-  const double i2 = s * (v + u / 3.0);
-  const double i4 = s * (v * v + u * (2.0 * v / 3.0 + u / 5.0));
-  const double i6 = s * (v * v * v + u * (v * v + u * (0.6 * v + u / 7.0)));
-  const double i8 = s * (v * v * v * v + u * (4.0 * v * v * v / 3.0 + u * (1.2 * v * v + u * (4.0 * v / 7.0 + u / 9.0))));
-  const double angle =
-      std::atan2(s, d) + d * (-1.25 * s + 0.625 * i2 - 0.15625 * i4 + (5.0 / 256.0) * i6 - i8 / 1024.0);
-  return {kernel, angle};
+LineIntegrals lineIntegrals(double d, double s, double theta) {
+  const double big = 1.0 - 0.25 * d * d;
+  const double m = big - 0.25 * s * s;
+  double b = s, a = theta, power = 1.0;
+  double b4 = 0.0, a5 = 0.0;
+  for (int k = 1; k <= 11; ++k) {
+    a -= 0.25 * d * b;  // A_k
+    if (k == 5) a5 = a;
+    power *= m;
+    b = (s * power + 2.0 * k * big * b) / (2.0 * k + 1.0);  // B_k
+    if (k == 4) b4 = b;
+    if (k == 10) {
+      a -= 0.25 * d * b;  // A_11
+      break;
+    }
+  }
+  return {(kShare4 * 5.0 * b4 + kShare10 * 11.0 * b) / (4.0 * kPi), kShare4 * a5 + kShare10 * a};
 }
 
-// ∫ (1 − r²/4)⁴ dr from r to the support radius.
+// ∫ w dr from r to the support radius.
 double radialIntegral(double r) {
-  auto primitive = [](double q) {
-    const double u = q * q;
-    return q * (1.0 + u * (-1.0 / 3.0 + u * (3.0 / 40.0 + u * (-1.0 / 112.0 + u / 2304.0))));
-  };
-  return r < kReach ? primitive(kReach) - primitive(r) : 0.0;
+  if (r >= kReach) return 0.0;
+  return lineIntegrals(0.0, kReach, 0.0).kernel - lineIntegrals(0.0, r, 0.0).kernel;
 }
 
 struct Wedge {
@@ -63,15 +64,15 @@ Wedge integrateWedge(const Vec2& p1, const Vec2& p2) {
   const double s2 = std::min(t.dot(p2), half);
   if (s1 >= s2) return wedge;
 
-  const LineIntegrals from = lineIntegrals(d, s1);
-  const LineIntegrals to = lineIntegrals(d, s2);
+  const LineIntegrals from = lineIntegrals(d, s1, std::atan2(s1, d));
+  const LineIntegrals to = lineIntegrals(d, s2, std::atan2(s2, d));
   wedge.lambda = (to.angle - from.angle) / (2.0 * kPi);
-  wedge.gradient = kNorm * (to.kernel - from.kernel) * towards;
+  wedge.gradient = (to.kernel - from.kernel) * towards;
   // Shadow lines: only where the piece ends within the support radius.
   const double r1 = p1.norm();
   const double r2 = p2.norm();
-  if (r1 < kReach && r1 > 0.0) wedge.gradient -= kNorm * radialIntegral(r1) / r1 * rightNormal(p1);
-  if (r2 < kReach && r2 > 0.0) wedge.gradient -= kNorm * radialIntegral(r2) / r2 * leftNormal(p2);
+  if (r1 < kReach && r1 > 0.0) wedge.gradient -= radialIntegral(r1) / r1 * rightNormal(p1);
+  if (r2 < kReach && r2 > 0.0) wedge.gradient -= radialIntegral(r2) / r2 * leftNormal(p2);
   return wedge;
 }
 

@@ -1,11 +1,44 @@
 #include <froude/solver/fluid/wall_layer.h>
 
 #include <array>
+#include <cstdlib>
 
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/kernel.h>
 
 namespace froude {
+
+namespace {
+
+// A row of particles half a spacing from a flat wall sees λ plus the lattice sum of a half space, which is 1 only if the
+// wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start over-dense.
+const double kRecession = (std::getenv("WREC")?std::atof(std::getenv("WREC")):0.0856);
+constexpr float kMostFilled = 0.6f;   // a particle with more wall around it has no one wall to go along
+constexpr double kLongestMiter = 4.0;  // of the recession, at needles
+
+Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized(); }
+
+// Moves each edge into its solid by the recession, edges that share a vertex together.
+void recede(std::span<WallEdge> edges) {
+  std::array<Vec2, kMaxWallEdges> startShift, endShift;
+  for (std::size_t i = 0; i < edges.size(); ++i) startShift[i] = endShift[i] = -kRecession * outwardNormal(edges[i]);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t j = 0; j < edges.size(); ++j) {
+      if (i == j || edges[i].owner != edges[j].owner || edges[i].b != edges[j].a) continue;
+      const Vec2 n = outwardNormal(edges[i]), m = outwardNormal(edges[j]);
+      const double along = 1.0 + n.dot(m);  // the miter is (n + m)/along long
+      const Vec2 shift = -kRecession * (n + m) / std::max(along, 2.0 / (kLongestMiter * kLongestMiter));
+      endShift[i] = shift;
+      startShift[j] = shift;
+    }
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    edges[i].a += startShift[i];
+    edges[i].b += endShift[i];
+  }
+}
+
+}  // namespace
 
 void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x,
                       std::span<const double> y) {
@@ -13,6 +46,7 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
   lambda_.resize(n);
   gradientX_.resize(n);
   gradientY_.resize(n);
+  tangent_.resize(n);
   offset_.resize(n);
   used_ = blockCount(n);
   if (blocks_.size() < used_) blocks_.resize(used_);
@@ -22,7 +56,7 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
     block.links.clear();
     block.words.clear();
     for (std::size_t i = begin; i < end; ++i) {
-      lambda_[i] = gradientX_[i] = gradientY_[i] = 0.0f;
+      lambda_[i] = gradientX_[i] = gradientY_[i] = tangent_[i] = 0.0f;
       offset_[i] = -1;
       if (obstacles.clearance({x[i], y[i]}) < support) {
         integrate(obstacles, grid, x, y, static_cast<std::uint32_t>(i), block);
@@ -59,6 +93,11 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
       obstacles.edgesNear({x[i], y[i]}, kernel::kSupport * spacing_, spacing_, filter_, {buffer.data(), buffer.size()});
   if (n == 0) return;
   const std::span<const WallEdge> edges(buffer.data(), n);
+  // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be.
+  bool facesAway = false;
+  for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
+  if (facesAway) findHidden(edges, grid, x, y, i, block);
+  recede({buffer.data(), n});
   std::array<WallShare, kMaxWallEdges> shares;
   const std::size_t owners = integrateWalls(edges, shares);
   for (std::size_t k = 0; k < owners; ++k) {
@@ -66,12 +105,11 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
     lambda_[i] += static_cast<float>(share.lambda);
     gradientX_[i] += static_cast<float>(share.gradient.x());
     gradientY_[i] += static_cast<float>(share.gradient.y());
-    block.links.push_back({i, share.owner, static_cast<float>(share.gradient.x()), static_cast<float>(share.gradient.y())});
+    block.links.push_back({i, share.owner, static_cast<float>(share.lambda), static_cast<float>(share.gradient.x()),
+                           static_cast<float>(share.gradient.y())});
   }
-  // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be.
-  bool facesAway = false;
-  for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
-  if (facesAway) findHidden(edges, grid, x, y, i, block);
+  const float steepness = gradientX_[i] * gradientX_[i] + gradientY_[i] * gradientY_[i];
+  if (lambda_[i] < kMostFilled && steepness > 1e-6f) tangent_[i] = lambda_[i] / ((1.0f - lambda_[i]) * steepness);
 }
 
 void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
@@ -104,7 +142,7 @@ void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid
 }
 
 std::size_t WallLayer::memoryBytes() const {
-  std::size_t bytes = (lambda_.capacity() + gradientX_.capacity() + gradientY_.capacity() + offset_.capacity()) * 4 +
+  std::size_t bytes = (lambda_.capacity() + gradientX_.capacity() + gradientY_.capacity() + tangent_.capacity() + offset_.capacity()) * 4 +
                       words_.capacity() * 8;
   for (const Block& b : blocks_) bytes += b.links.capacity() * sizeof(WallLink) + b.words.capacity() * 8;
   return bytes;

@@ -16,6 +16,7 @@ namespace froude {
 struct WallLink {
   std::uint32_t particle;
   std::int32_t owner;        // body index, −1: the domain
+  float lambda;
   float gradientX, gradientY;  // [1/dx]
 };
 
@@ -33,6 +34,8 @@ class WallLayer {
   const float* lambda() const { return lambda_.data(); }
   const float* gradientX() const { return gradientX_.data(); }
   const float* gradientY() const { return gradientY_.data(); }
+  /// λ/((1 − λ)·|g|²): how much of the motion along the wall is made up for; 0 where λ ≥ 0.6.
+  const float* tangent() const { return tangent_.data(); }
   /// False if no particle is near a wall: loops then skip λ altogether.
   bool any() const { return any_; }
   HiddenPairs hidden() const {
@@ -59,7 +62,7 @@ class WallLayer {
 
   double spacing_;
   CollisionFilter filter_;
-  AlignedArray<float> lambda_, gradientX_, gradientY_;
+  AlignedArray<float> lambda_, gradientX_, gradientY_, tangent_;
   AlignedArray<std::int32_t> offset_;
   AlignedArray<std::uint64_t> words_;
   std::vector<Block> blocks_;
