@@ -1,6 +1,7 @@
 #include "scene/estimate.h"
 
 #include <froude/particles/pool.h>
+#include <froude/solver/bullet/ballistic.h>
 #include <froude/solver/fluid/fluid_model.h>
 
 #include <algorithm>
@@ -48,6 +49,33 @@ double expectedSpeed(const Scene& scene, bool bulletsToo) {
   return std::sqrt(start + 2.0 * gravity * height);
 }
 
+namespace {
+
+/// The bounds of the world's own models, asked one by one: a model names the smallest of what it is asked for.
+std::vector<NamedBound> boundsOf(const Scene& scene, double gravity) {
+  const WorldDef& world = scene.world;
+  if (world.timeStep) return {{StepLimit::Literal, *world.timeStep}};
+  std::vector<NamedBound> bounds;
+  if (world.fluid) {
+    ParticlePool pool(PoolSettings{});
+    const auto model = makeFluidModel(*world.fluid, world.domain, pool);
+    const double speed = expectedSpeed(scene, false);
+    for (const StepBound& b :
+         {model->stepBound(pool, 0.0, 0.0), model->stepBound(pool, speed, 0.0), model->stepBound(pool, 0.0, gravity)}) {
+      const auto same = [&](const NamedBound& known) { return known.limit == b.limit; };
+      if (std::isfinite(b.dt) && std::none_of(bounds.begin(), bounds.end(), same)) bounds.push_back({b.limit, b.dt});
+    }
+  }
+  if (world.bullet && gravity > 0.0) bounds.push_back({StepLimit::Bullet, bulletStepBound(*world.bullet, gravity)});
+  double spin = 0.0;
+  for (const BodyDef& body : world.bodies) spin = std::max(spin, std::abs(body.spin));
+  if (spin > 0.0) bounds.push_back({StepLimit::Spin, 0.5 / spin});
+  std::stable_sort(bounds.begin(), bounds.end(), [](const auto& a, const auto& b) { return a.dt < b.dt; });
+  return bounds;
+}
+
+}  // namespace
+
 Estimate estimate(const Scene& scene) {
   const WorldDef& world = scene.world;
   const double gravity = gravityScale(world);
@@ -56,14 +84,8 @@ Estimate estimate(const Scene& scene) {
   for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
   result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
   result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount()));
-  StepBound bound;
-  if (world.fluid) {
-    ParticlePool pool(PoolSettings{});
-    bound = makeFluidModel(*world.fluid, world.domain, pool)->stepBound(expectedSpeed(scene, false), gravity);
-  }
-  if (world.timeStep) bound = {*world.timeStep, StepLimit::Literal};
-  result.substep = std::min(bound.dt, scene.duration);
-  result.limit = bound.limit;
+  result.bounds = boundsOf(scene, gravity);
+  result.substep = result.bounds.empty() ? scene.duration : std::min(result.bounds.front().dt, scene.duration);
   result.substeps = std::ceil(scene.duration / result.substep);
   return result;
 }

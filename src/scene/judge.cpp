@@ -40,6 +40,17 @@ void judgeCuts(Draft& draft) {
   }
 }
 
+void judgeConveyors(Draft& draft) {
+  const Polygon* last = nullptr;
+  for (std::size_t i = 0; i < draft.scene.world.bodies.size(); ++i) {
+    const BodyDef& body = draft.scene.world.bodies[i];
+    if (body.surfaceVelocity == 0.0 || body.shape.get() == last) continue;
+    last = body.shape.get();
+    draft.warn(draft.bodyPlaces[i], draft.bodyPaths[i] + ".surface_velocity",
+               "moves bullets only: walls are free-slip for fluids in this version");
+  }
+}
+
 /// Length of the ray from the middle of edge i into the solid until it leaves it.
 double chordFrom(const Polygon& shape, std::uint32_t i) {
   const Vec2 a = shape.edgeStart(i), along = shape.edgeEnd(i) - a;
@@ -162,6 +173,7 @@ void judge(Draft& draft) {
   judgeTimeStep(draft);
   judgeCuts(draft);
   if (!draft.scene.world.fluid) return;
+  judgeConveyors(draft);
   judgeThickness(draft);
   GapJudge(draft).judge();
 }

@@ -73,8 +73,10 @@ void readSurface(TableReader& body, BodyDef& def) {
   def.density = body.number("density", Range::positive(1e12), 1000.0);
   def.friction = body.number("friction", Range::notNegative(1e3), 0.3);
   def.restitution = body.number("restitution", Range::between(0.0, 1.0), 0.1);
-  if (body.has("slip"))
-    def.slip = body.word("slip", {"free", "no"}, std::nullopt) == "free" ? Slip::Free : Slip::NoSlip;
+  if (body.has("slip")) {
+    body.word("slip", {"free"}, std::nullopt, {"no"});
+    def.slip = Slip::Free;
+  }
   def.surfaceVelocity = body.number("surface_velocity", Range::between(-1e6, 1e6), 0.0);
   constexpr std::int64_t kAll = 0xFFFFFFFF;
   def.group = static_cast<std::uint32_t>(body.integer("group", 0, kAll, 1));

@@ -67,7 +67,8 @@ void readDomain(TableReader& root, Draft& draft) {
     const bool all = domain.boolean("walls", true);
     for (std::size_t i = 0; i < 4; ++i) def.closed[i] = all && !open[i];
   }
-  def.slip = domain.word("wall_slip", {"free", "no"}, "free") == "free" ? Slip::Free : Slip::NoSlip;
+  domain.word("wall_slip", {"free"}, "free", {"no"});
+  def.slip = Slip::Free;
   root.resolved().set("domain", domain.resolved());
 }
 

@@ -42,8 +42,8 @@ TEST(SceneOverride, a_name_may_hold_dots) {
 }
 
 TEST(SceneOverride, a_bare_word_is_a_string_and_a_quoted_one_too) {
-  EXPECT_EQ(loadText(kScene, {{"domain.wall_slip", "no"}}).world.domain.slip, Slip::NoSlip);
-  EXPECT_EQ(loadText(kScene, {{"domain.wall_slip", "\"no\""}}).world.domain.slip, Slip::NoSlip);
+  EXPECT_EQ(loadText(kScene, {{"output.png.color", "pressure"}}).output.image.color, "pressure");
+  EXPECT_EQ(loadText(kScene, {{"output.png.color", "\"pressure\""}}).output.image.color, "pressure");
   EXPECT_EQ(loadText(kScene, {{"title", "C:\\x y"}}).title, "C:\\x y");
 }
 

@@ -131,7 +131,7 @@ gravity = [0.1, "-9.81*(1 + 0.1*sin(t))"]
 [domain]
 box = [-0.3, 0.0, 2.0, 1.1]
 walls = ["left", "bottom"]
-wall_slip = "no"
+wall_slip = "free"
 [model]
 spacing = 0.0173
 time_step = 1e-3
