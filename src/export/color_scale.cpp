@@ -72,6 +72,11 @@ double roundUp(double value) {
   return 10.0 * decade;
 }
 
+double roundDown(double value) {
+  const double decade = std::pow(10.0, std::floor(std::log10(value)));
+  return (value >= 5.0 * decade ? 5.0 : value >= 2.0 * decade ? 2.0 : 1.0) * decade;
+}
+
 std::vector<double> niceTicks(double low, double high, int wanted) {
   double step = 0.0;
   const double least = (high - low) / wanted;

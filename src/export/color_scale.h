@@ -20,6 +20,8 @@ Color viridis(double t);
 
 /// Smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 · 10^k that is at least `value` > 0.
 double roundUp(double value);
+/// Largest of 1, 2, 5 · 10^k that is at most `value` > 0.
+double roundDown(double value);
 /// Multiples of 1, 2 or 5 · 10^k in [low, high], `wanted` or fewer steps.
 std::vector<double> niceTicks(double low, double high, int wanted);
 

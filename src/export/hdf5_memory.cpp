@@ -9,12 +9,12 @@
 namespace froude::exporting {
 namespace {
 
-hid_t createInMemory(std::size_t growth) {
+hid_t createInMemory(const std::string& name, std::size_t growth) {
   // HDF5 would print its own stack of errors; ours say what matters.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "HDF5");
   checkHdf5(H5Pset_fapl_core(access, growth, false), "HDF5");
-  return H5Fcreate("frames in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
 }
 
 void writeScalar(hid_t object, const char* name, hid_t type, hid_t fileType, const void* value) {
@@ -33,7 +33,8 @@ void checkHdf5(herr_t result, const std::string& what) {
   if (result < 0) throw OutputError(what + ": HDF5 cannot write it; memory may be short");
 }
 
-Hdf5Memory::Hdf5Memory(std::size_t growth) : file_(createInMemory(growth), H5Fclose, "frames") {}
+Hdf5Memory::Hdf5Memory(const std::string& name, std::size_t growth)
+    : file_(createInMemory(name, growth), H5Fclose, name) {}
 
 std::size_t Hdf5Memory::bytes() const {
   return static_cast<std::size_t>(std::max<ssize_t>(0, H5Fget_file_image(file_, nullptr, 0)));

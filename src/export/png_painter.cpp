@@ -21,6 +21,7 @@ constexpr double kWall = 4.0, kOutline = 1.5;
 constexpr double kTallest = 1.4;       // view, against the picture's width
 constexpr double kSmallestUnit = 0.6;  // letters stay legible in small pictures
 constexpr double kBar = 340.0;
+constexpr double kSmallestBullet = 1.25;
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
 
 void grey(cairo_t* cr, double level) { cairo_set_source_rgb(cr, level, level, level); }
@@ -105,7 +106,7 @@ void PngPainter::drawParticles(const World& world, std::uint8_t* data, int strid
   for (const ParticlePool* pool : {world.fluid(), world.bullets()}) {
     if (pool == nullptr || pool->empty()) continue;
     const bool isFluid = pool == world.fluid();
-    const double radius = isFluid ? fluidRadius_ * pixels_ : std::max(bulletRadius_ * pixels_, 0.75 * unit_);
+    const double radius = isFluid ? fluidRadius_ * pixels_ : std::max(bulletRadius_ * pixels_, kSmallestBullet * unit_);
     const Box seen = view_.grown((radius + 1.0) / pixels_);
     const auto pressure = pool->findColumn<float>("pressure"), density = pool->findColumn<float>("density");
     const auto x = pool->x(), y = pool->y(), vx = pool->vx(), vy = pool->vy();
@@ -141,7 +142,10 @@ void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
     for (std::size_t ring = 0; ring + 1 < starts.size(); ++ring) {
       for (std::uint32_t v = starts[ring]; v < starts[ring + 1]; ++v) {
         const Vec2 p = toPixel(transform.toWorld(shape.vertices()[v]));
-        cairo_line_to(cr, p.x(), p.y());
+        if (v == starts[ring])
+          cairo_move_to(cr, p.x(), p.y());
+        else
+          cairo_line_to(cr, p.x(), p.y());
       }
       cairo_close_path(cr);
     }
@@ -216,9 +220,7 @@ void PngPainter::drawHeader(cairo_t* cr, double time) const {
 }
 
 void PngPainter::drawScaleBar(cairo_t* cr) const {
-  const std::vector<double> lengths = niceTicks(0.0, 0.18 * (right_ - left_) / pixels_, 1);
-  const double metres =
-      lengths.back() > 0.0 ? lengths.back() : niceTicks(0.0, 0.18 * (right_ - left_) / pixels_, 3).back();
+  const double metres = roundDown(0.18 * (right_ - left_) / pixels_);
   const double x = std::max(left_, kMargin * unit_), y = bottom_ + 34.0 * unit_, tick = 5.0 * unit_;
   const double end = x + metres * pixels_;
   grey(cr, kDark);

@@ -9,7 +9,11 @@
 namespace froude::exporting {
 namespace {
 
-constexpr double kSmallestSeen = 2.0;  // radius [pixels]
+constexpr double kSmallestSeen = 3.5;  // radius [pixels]
+// Small discs are a little wider than their particle's share of the area: water that is stretched by a few per cent
+// must not show the paper between its particles.
+constexpr double kOverlap = 1.25;
+constexpr float kRim = 1.0f, kRimShade = 0.72f;  // width [pixels]; of the colour inside
 constexpr Color kNeutral{70, 70, 70};
 
 Color colorOf(float place) {
@@ -22,6 +26,11 @@ Color colorOf(float place) {
   return table[static_cast<std::size_t>(std::clamp(place, 0.0f, 1.0f) * 255.0f + 0.5f)];
 }
 
+Color shaded(Color c, float level) {
+  const auto part = [&](std::uint8_t v) { return static_cast<std::uint8_t>(static_cast<float>(v) * level + 0.5f); };
+  return {part(c.r), part(c.g), part(c.b)};
+}
+
 void blend(std::uint32_t& pixel, Color c, float alpha) {
   const auto mix = [&](int shift, std::uint8_t value) {
     const float old = static_cast<float>((pixel >> shift) & 255u);
@@ -30,7 +39,8 @@ void blend(std::uint32_t& pixel, Color c, float alpha) {
   pixel = 0xFF000000u | mix(16, c.r) | mix(8, c.g) | mix(0, c.b);
 }
 
-/// Calls paint(x, y, coverage) for the pixels of a disc; an edge one pixel wide, the right area on average.
+/// Calls paint(x, y, coverage, core) for the pixels of a disc: how much of the pixel it covers, and how much of that is
+/// inside the rim; both edges are a pixel wide and have the right area on average.
 template <typename Paint>
 void forDisc(const Canvas& canvas, const Disc& d, float radius, Paint&& paint) {
   const float reach = radius + 0.5f;
@@ -41,8 +51,8 @@ void forDisc(const Canvas& canvas, const Disc& d, float radius, Paint&& paint) {
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x) {
       const float dx = static_cast<float>(x) + 0.5f - d.x, dy = static_cast<float>(y) + 0.5f - d.y;
-      const float coverage = std::min(1.0f, reach - std::sqrt(dx * dx + dy * dy));
-      if (coverage > 0.0f) paint(x, y, coverage);
+      const float distance = std::sqrt(dx * dx + dy * dy), coverage = std::min(1.0f, reach - distance);
+      if (coverage > 0.0f) paint(x, y, coverage, std::clamp(radius - kRim + 0.5f - distance, 0.0f, 1.0f));
     }
 }
 
@@ -50,7 +60,7 @@ std::uint32_t& pixelAt(const Canvas& canvas, int x, int y) {
   return reinterpret_cast<std::uint32_t*>(canvas.data + static_cast<std::ptrdiff_t>(y) * canvas.stride)[x];
 }
 
-/// A disc under two pixels is the square of its area: cheap, and squares of neighbours tile the plane, so that water
+/// A small disc is the square of its area: cheap, and squares of neighbours tile the plane, so that water
 /// has no moiré. Neutral discs are kept apart, for they have no value to average.
 void paintSmall(const Canvas& canvas, const std::vector<Disc>& discs, double radius) {
   const int width = canvas.right - canvas.left, height = canvas.bottom - canvas.top;
@@ -58,7 +68,7 @@ void paintSmall(const Canvas& canvas, const std::vector<Disc>& discs, double rad
     float weight = 0.0f, value = 0.0f, neutral = 0.0f;
   };
   std::vector<Pixel> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const float half = static_cast<float>(0.5 * std::sqrt(kPi) * radius);
+  const float half = static_cast<float>(kOverlap * 0.5 * std::sqrt(kPi) * radius);
   for (const Disc& d : discs) {
     const float left = d.x - half - static_cast<float>(canvas.left), top = d.y - half - static_cast<float>(canvas.top);
     const float right = left + 2.0f * half, bottom = top + 2.0f * half;
@@ -99,8 +109,9 @@ void paintDiscs(const Canvas& canvas, const std::vector<Disc>& discs, double rad
   }
   for (const Disc& d : discs) {
     const Color c = colorOf(d.place);
-    forDisc(canvas, d, static_cast<float>(radius),
-            [&](int x, int y, float coverage) { blend(pixelAt(canvas, x, y), c, coverage); });
+    forDisc(canvas, d, static_cast<float>(radius), [&](int x, int y, float coverage, float core) {
+      blend(pixelAt(canvas, x, y), shaded(c, kRimShade + (1.0f - kRimShade) * core), coverage);
+    });
   }
 }
 

@@ -90,7 +90,7 @@ int positionBytes(const WorldDef& def) {
   return farthest * std::ldexp(1.0, -24) > kPositionError * length ? 8 : 4;
 }
 
-Segment::Segment(int number) : number_(number), file_(kGrowth) {}
+Segment::Segment(int number) : number_(number), file_("memory:" + segmentFile(number), kGrowth) {}
 
 void Segment::add(const World& world, int index) {
   const ParticlePool *fluid = world.fluid(), *bullets = world.bullets();
@@ -190,7 +190,7 @@ std::string xdmfGrid(const FrameEntry& f) {
 }  // namespace
 
 void writeIndex(const std::string& folder, const std::vector<FrameEntry>& frames) {
-  Hdf5Memory links(kIndexGrowth);
+  Hdf5Memory links("memory:frames.h5", kIndexGrowth);
   std::string xdmf =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<Xdmf Version=\"2.0\">\n"

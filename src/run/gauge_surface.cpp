@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include <froude/solver/fluid/kernel.h>
+
 namespace froude::run {
 namespace {
 
@@ -14,7 +16,6 @@ constexpr float kSurelyWet = 0.9f, kSurelyDry = 0.1f;
 constexpr float kNotLookedAt = -1.0f;
 constexpr std::int64_t kStripCells = 1 << 20;
 constexpr std::int64_t kMaxTiles = 1 << 22;
-constexpr double kSupport = 2.0;  // [dx]
 
 bool isWet(double phi) { return phi >= kWet; }
 bool isSolid(double phi) { return std::isnan(phi); }
@@ -32,7 +33,7 @@ FluidSurface::FluidSurface(const World& world) : world_(world) {
   Box box;
   const auto x = fluid->x(), y = fluid->y();
   for (std::size_t i = 0; i < fluid->size(); ++i) box.include(Vec2(x[i], y[i]));
-  box = box.grown(kSupport * dx_);
+  box = box.grown(kernel::kSupport * dx_);
   if (domain.periodicX) box.min.x() = domain.box.min.x(), box.max.x() = domain.box.max.x();
   if (domain.periodicY) box.min.y() = domain.box.min.y(), box.max.y() = domain.box.max.y();
   box.min = box.min.cwiseMax(domain.box.min);
@@ -54,7 +55,7 @@ Vec2 FluidSurface::node(std::int64_t i, std::int64_t j) const {
 }
 
 void FluidSurface::markTiles() {
-  tile_ = kSupport * dx_;
+  tile_ = kernel::kSupport * dx_;
   const auto across = [&](std::int64_t cells) {
     return static_cast<std::int64_t>(static_cast<double>(cells) * h_ / tile_) + 1;
   };
@@ -167,140 +168,6 @@ double FluidSurface::area() {
 double FluidSurface::level() {
   if (!level_) scan();
   return *level_;
-}
-
-// Row by row from below, in strips that fit a cache rather than a domain.
-void FluidSurface::scan() {
-  enum class Column : std::uint8_t { Searching, Wet, Done };
-  std::vector<Column> state(static_cast<std::size_t>(columns_), Column::Searching);
-  std::vector<std::int64_t> bottom(static_cast<std::size_t>(columns_));
-  std::vector<double> top(static_cast<std::size_t>(columns_), std::nan(""));
-  for (std::int64_t i = 0; i < columns_; ++i) {
-    bottom[static_cast<std::size_t>(i)] = bottomRow(node(i, 0).x(), rows_);
-    if (bottom[static_cast<std::size_t>(i)] < 0) state[static_cast<std::size_t>(i)] = Column::Done;
-  }
-
-  const std::int64_t width = std::max<std::int64_t>(columns_, 1);
-  const std::int64_t stripRows = std::max<std::int64_t>(2, kStripCells / width / 2 * 2);
-  std::vector<float> phi(static_cast<std::size_t>((stripRows + 1) * width), kNotLookedAt);
-  std::vector<float> before(static_cast<std::size_t>(width), kNotLookedAt);
-  std::uint64_t wetCells = 0;
-  for (std::int64_t first = 0; first < rows_; first += stripRows) {
-    const std::int64_t rows = std::min(stripRows, rows_ - first);
-    fillStrip(phi, first, rows, first > 0);
-    for (std::int64_t r = 0; r < rows; ++r) {
-      const float* row = &phi[static_cast<std::size_t>(r * width)];
-      const float* below = r > 0 ? row - width : before.data();
-      for (std::int64_t i = 0; i < columns_; ++i) {
-        const auto c = static_cast<std::size_t>(i);
-        const bool wet = isWet(static_cast<double>(row[i]));
-        if (wet) ++wetCells;
-        if (state[c] == Column::Searching && first + r == bottom[c]) {
-          state[c] = wet ? Column::Wet : Column::Done;
-        } else if (state[c] == Column::Wet && !wet) {
-          const Vec2 at = node(i, first + r - 1);
-          top[c] = at.y() +
-                   h_ * crossing(at, static_cast<double>(below[i]), node(i, first + r), static_cast<double>(row[i]));
-          state[c] = Column::Done;
-        }
-      }
-    }
-    const auto lastRow = phi.begin() + static_cast<std::ptrdiff_t>((rows - 1) * width);
-    std::copy(lastRow, lastRow + width, before.begin());
-    const auto overlap = phi.begin() + static_cast<std::ptrdiff_t>(stripRows * width);
-    std::copy(overlap, overlap + width, phi.begin());
-  }
-
-  double sum = 0.0;
-  std::size_t wetColumns = 0;
-  for (std::int64_t i = 0; i < columns_; ++i) {
-    const auto c = static_cast<std::size_t>(i);
-    if (state[c] == Column::Wet) {  // up to the ceiling, or to an open side
-      const Vec2 at = node(i, rows_ - 1), beyond = node(i, rows_);
-      top[c] = at.y() + h_ * crossing(at, static_cast<double>(before[c]), beyond, solid(beyond) ? std::nan("") : 0.0);
-    }
-    if (std::isnan(top[c])) continue;
-    sum += top[c] - origin_.y();
-    ++wetColumns;
-  }
-  area_ = static_cast<double>(wetCells) * h_ * h_;
-  level_ = wetColumns > 0 ? sum / static_cast<double>(wetColumns) : std::nan("");
-}
-
-// Cells of even rows and columns first; between those that are all surely wet, or all surely dry, nothing needs a look.
-// That leaves one φ a particle instead of four. Row 0 may be known from the strip below, at its even columns.
-void FluidSurface::fillStrip(std::vector<float>& phi, std::int64_t firstRow, std::int64_t rows,
-                             bool bottomKnown) const {
-  const std::int64_t w = columns_;
-  std::vector<Vec2> points;
-  std::vector<std::size_t> places;
-  const auto look = [&] {
-    const std::vector<float> values = evaluate(points);
-    for (std::size_t k = 0; k < values.size(); ++k) phi[places[k]] = values[k];
-    points.clear();
-    places.clear();
-  };
-  std::fill(phi.begin() + (bottomKnown ? w : 0), phi.end(), kNotLookedAt);
-  for (std::int64_t r = bottomKnown ? 2 : 0; r <= rows && firstRow + r < rows_; r += 2)
-    for (std::int64_t i = 0; i < w; i += 2)
-      if (active(i, firstRow + r)) {
-        points.push_back(node(i, firstRow + r));
-        places.push_back(static_cast<std::size_t>(r * w + i));
-      }
-  look();
-
-  const std::vector<std::uint8_t> nearBody = bodyMask(firstRow, rows);
-  for (std::int64_t r = 0; r < rows; ++r)
-    for (std::int64_t i = (r & 1) != 0 ? 0 : 1; i < w; i += (r & 1) != 0 ? 1 : 2) {
-      if (!active(i, firstRow + r)) continue;
-      const auto at = static_cast<std::size_t>(r * w + i);
-      const std::int64_t stepX = i & 1, stepY = r & 1;
-      const bool inside = i + stepX < w && firstRow + r + stepY < rows_;
-      if (inside && (nearBody.empty() || nearBody[at] == 0)) {
-        float least = 2.0f, most = -2.0f;
-        for (const std::int64_t y : {-stepY, stepY})
-          for (const std::int64_t x : {-stepX, stepX}) {
-            const float corner = phi[static_cast<std::size_t>((r + y) * w + i + x)];
-            least = std::min(least, std::isnan(corner) ? kNotLookedAt : corner);
-            most = std::max(most, corner);
-          }
-        if (least >= kSurelyWet) {
-          phi[at] = 1.0f;
-          continue;
-        }
-        if (most <= kSurelyDry && least >= 0.0f) {
-          phi[at] = 0.0f;
-          continue;
-        }
-      }
-      points.push_back(node(i, firstRow + r));
-      places.push_back(at);
-    }
-  look();
-}
-
-// Where a polygon may lie between two wet cells; empty if there is none.
-std::vector<std::uint8_t> FluidSurface::bodyMask(std::int64_t firstRow, std::int64_t rows) const {
-  std::vector<std::uint8_t> mask;
-  for (std::size_t b = 0; b < world_.bodyCount(); ++b) {
-    const Box local = world_.bodyDefinition(b).shape->bounds();
-    const Transform& transform = world_.body(b).transform;
-    Box box;
-    for (const double x : {local.min.x(), local.max.x()})
-      for (const double y : {local.min.y(), local.max.y()}) box.include(transform.toWorld(Vec2(x, y)));
-    const Vec2 low = (box.min - node(0, firstRow)) / h_, high = (box.max - node(0, firstRow)) / h_;
-    const auto cell = [](double t, std::int64_t end) {
-      return static_cast<std::int64_t>(std::clamp(t, -1.0, static_cast<double>(end)));
-    };
-    for (std::int64_t r = std::max<std::int64_t>(0, cell(low.y(), rows));
-         r <= std::min(rows - 1, cell(high.y() + 1.0, rows)); ++r)
-      for (std::int64_t i = std::max<std::int64_t>(0, cell(low.x(), columns_));
-           i <= std::min(columns_ - 1, cell(high.x() + 1.0, columns_)); ++i) {
-        if (mask.empty()) mask.assign(static_cast<std::size_t>(rows * columns_), 0);
-        mask[static_cast<std::size_t>(r * columns_ + i)] = 1;
-      }
-  }
-  return mask;
 }
 
 }  // namespace froude::run

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <froude/solver/world.h>
+#include "run/gauge_bulk.h"
 
 namespace froude::run {
 
@@ -18,10 +19,10 @@ class FluidSurface {
  public:
   explicit FluidSurface(const World& world);
 
-  /// Area of the wet cells [m²]. Cost: about one φ a particle (see `scan`); with `level`, once.
+  /// Area of the wet cells [m²]. Cost: 50 kernels a particle, and one φ a cell near solids; with `level`, once.
   double area();
   /// Mean, over the columns whose bottom cell is wet, of the top of the run of wet cells from the bottom, interpolated
-  /// linearly in φ between cell centres; NaN where no column is wet [m]. Cost: with `area`, once.
+  /// linearly in φ between cell centres; NaN where no column is wet [m]. Cost: as `area`.
   double level();
   /// The same top at one x, anywhere between the columns; 0 where the bottom is dry [m]. Cost: one φ a cell of the
   /// column.
@@ -34,6 +35,9 @@ class FluidSurface {
   double toe() const;
 
  private:
+  enum class Near : std::uint8_t { Nothing, Beside, Inside };
+  struct ColumnTops;
+
   Vec2 node(std::int64_t i, std::int64_t j) const;
   bool active(std::int64_t i, std::int64_t j) const;
   bool solid(const Vec2& point) const { return world_.insideSolid(point); }
@@ -45,8 +49,8 @@ class FluidSurface {
   void markTiles();
   void markParticle(const Vec2& p);
   void scan();
-  void fillStrip(std::vector<float>& phi, std::int64_t firstRow, std::int64_t rows, bool bottomKnown) const;
-  std::vector<std::uint8_t> bodyMask(std::int64_t firstRow, std::int64_t rows) const;
+  void fillStrip(std::vector<float>& phi, const BulkFraction& bulk, std::int64_t firstRow, std::int64_t rows) const;
+  std::vector<Near> solidMask(std::int64_t firstRow, std::int64_t rows) const;
 
   const World& world_;
   double dx_ = 0.0, h_ = 0.0;  // [m]
