@@ -31,7 +31,7 @@ class ContactSearch {
         to_(chord.to),
         path_(chord.to - chord.from),
         reach_(chord.radius + chord.slack + chord.skin),
-        near_(chord.radius + chord.slack + 0.5 * chord.skin),
+        near_(chord.floor + chord.slack),
         skin_(chord.skin),
         rounding_(0.0625 * chord.skin),
         slack_(chord.slack),
@@ -78,7 +78,7 @@ class ContactSearch {
     }
     if (curved_) {
       if (sBegin > reach_ ? sEnd >= reach_ : sPath >= 4.0 * slack_) return;
-    } else if (sEnd >= (sBegin >= near_ ? near_ : sBegin - rounding_)) {
+    } else if (sEnd >= near_) {
       return;
     }
     const double into = sBegin > reach_ ? (sBegin - reach_) / (sBegin - sEnd) : 0.0;
@@ -112,7 +112,7 @@ class ContactSearch {
       if (closest >= (curved_ ? reach_ : near_)) return;
       const double half = std::sqrt(std::max(0.0, (reach_ - passing) * (reach_ + passing))) / length;
       keep({true, std::clamp(passingTime - half, part.begin, part.end), index, true});
-    } else if (closest < (begin >= near_ ? near_ : begin - rounding_)) {
+    } else if (closest < near_) {
       keep({true, part.begin, index, true});
     }
   }

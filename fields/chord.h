@@ -11,6 +11,7 @@ struct Chord {
   Vec2 from, to;
   double radius;
   double skin;         ///< how far off the solid a contact is placed; 256 roundings of the largest coordinate
+  double floor;        ///< what stays farther from the solid is no contact
   double slack = 0.0;  ///< the true path deviates by up to 4 · slack · t · (1 − t) from the chord at fraction t
 };
 
@@ -20,6 +21,12 @@ struct ChordHit {
   std::uint32_t edge = 0;
   bool vertex = false;  ///< at the start of `edge`
 };
+
+/// The floor of a sweep that starts at `distance` from the solid: most of the skin, or less for a disc that is already
+/// closer: then it may stay as close as it is.
+inline double floorFor(double radius, double skin, double distance) {
+  return std::min(radius + 0.75 * skin, distance - 0.0625 * skin);
+}
 
 /// Which sources count; null: all.
 using SourceFilter = FunctionRef<bool(std::uint32_t)>;

@@ -30,6 +30,12 @@ Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, const Vec2& normal, doubl
   return there.distance > std::max(here.distance, radius + 0.5 * clearance) ? shift : none;
 }
 
+SweepHit sweepStill(const EdgeGrid& grid, const Vec2& from, const Vec2& to, double radius, const FieldSample& atStart,
+                    const SourceFilter* accepts) {
+  const double skin = skinFor(grid, {from, to});
+  return sweepChord(grid, {from, to, radius, skin, floorFor(radius, skin, atStart.distance)}, atStart, accepts);
+}
+
 SweepHit sweepChord(const EdgeGrid& grid, const Chord& chord, const FieldSample& atStart, const SourceFilter* accepts) {
   SweepHit hit;
   hit.center = chord.to;
@@ -106,10 +112,10 @@ struct CurveHit {
 /// contact.
 class CurveSearch {
  public:
-  CurveSearch(const EdgeGrid& grid, const RelativePath& path, double radius, double skin)
-      : grid_(grid), path_(path), radius_(radius), skin_(skin) {
+  CurveSearch(const EdgeGrid& grid, const RelativePath& path, const Chord& whole)
+      : grid_(grid), path_(path), radius_(whole.radius), skin_(whole.skin), floor_(whole.floor) {
     const double size = grid.outlines().size().maxCoeff();
-    graze_ = std::min(radius > 0.0 ? kGrazeOfRadius * radius : kInfinity, kGrazeOfSize * size);
+    graze_ = std::min(radius_ > 0.0 ? kGrazeOfRadius * radius_ : kInfinity, kGrazeOfSize * size);
   }
 
   CurveHit first() {
@@ -127,7 +133,7 @@ class CurveSearch {
       const double slack = std::min(0.125 * curvature * step * step, 0.1 * grid_.band());
       step = std::min(step, std::sqrt(8.0 * slack / curvature));
       const ChordHit contact =
-          detail::firstContact(grid_, {path_.at(time), path_.at(time + step), radius_, skin_, slack});
+          detail::firstContact(grid_, {path_.at(time), path_.at(time + step), radius_, skin_, floor_, slack});
       ++chords;
       if (!contact.hit) {
         time += step;
@@ -153,7 +159,7 @@ class CurveSearch {
 
   const EdgeGrid& grid_;
   const RelativePath& path_;
-  const double radius_, skin_;
+  const double radius_, skin_, floor_;
   double graze_;
 };
 
@@ -170,8 +176,7 @@ SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to,
   FROUDE_ASSERT(radius >= 0.0 && radius <= field.band());
   if (!detail::finitePath(from, to)) return {};
   const EdgeGrid& grid = field.grid();
-  const Chord chord{from, to, radius, detail::skinFor(grid, {from, to})};
-  return detail::sweepChord(grid, chord, grid.sample(from), nullptr);
+  return detail::sweepStill(grid, from, to, radius, grid.sample(from), nullptr);
 }
 
 SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double dt, const Vec2& from, const Vec2& to,
@@ -183,14 +188,15 @@ SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double
                           dt * motion.spin};
   const Vec2 end = motion.start.position + dt * motion.velocity;
   const double skin = detail::skinFor(grid, {from, to, motion.start.position, end});
-  const Chord whole{path.at(0.0), path.at(1.0), radius, skin};
-  const FieldSample atStart = grid.sample(whole.from);
+  const Vec2 start = path.at(0.0);
+  const FieldSample atStart = grid.sample(start);
+  const Chord whole{start, path.at(1.0), radius, skin, detail::floorFor(radius, skin, atStart.distance)};
 
   SweepHit hit;
   if (path.turn == 0.0) {
     hit = detail::sweepChord(grid, whole, atStart, nullptr);
   } else if (!detail::startsInside(grid, atStart, whole.from, whole, &hit)) {
-    const CurveHit curve = CurveSearch(grid, path, radius, skin).first();
+    const CurveHit curve = CurveSearch(grid, path, whole).first();
     hit.hit = curve.contact.hit;
     if (hit.hit) {
       const Vec2 center = path.at(curve.time);

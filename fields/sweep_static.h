@@ -20,7 +20,9 @@ bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& 
 /// radius, if it is closer than three quarters of that and there is room. Returns the shift.
 Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, const Vec2& normal, double radius, double clearance);
 
-/// The whole sweep for a solid at rest.
+/// The whole sweep for a solid at rest, given the field's answer at the start.
+SweepHit sweepStill(const EdgeGrid& grid, const Vec2& from, const Vec2& to, double radius, const FieldSample& atStart,
+                    const SourceFilter* accepts);
 SweepHit sweepChord(const EdgeGrid& grid, const Chord& chord, const FieldSample& atStart, const SourceFilter* accepts);
 
 }  // namespace froude::detail

@@ -125,14 +125,13 @@ void WorldField::forEachEdgeNear(const Vec2& p, double radius, FunctionRef<void(
 SweepHit WorldField::sweepDisc(const Vec2& from, const Vec2& to, double radius, const CollisionFilter& filter) const {
   FROUDE_ASSERT(radius >= 0.0 && radius <= band_);
   if (!detail::finitePath(from, to)) return {};
-  const detail::Chord chord{from, to, radius, detail::skinFor(grid_, {from, to})};
   SweepHit hit;
   if (acceptsAll(filter)) {
-    hit = detail::sweepChord(grid_, chord, grid_.sample(from), nullptr);
+    hit = detail::sweepStill(grid_, from, to, radius, grid_.sample(from), nullptr);
   } else {
     const auto accepted = [&](std::uint32_t source) { return accepts(filter, source); };
     const detail::SourceFilter sources(accepted);
-    hit = detail::sweepChord(grid_, chord, grid_.sampleAccepted(from, sources), &sources);
+    hit = detail::sweepStill(grid_, from, to, radius, grid_.sampleAccepted(from, sources), &sources);
   }
   if (hit.hit) hit.body = edges_[static_cast<std::size_t>(hit.edge)].body;
   return hit;

@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include <froude/base/random.h>
+#include <froude/fields/distance_field.h>
+#include <froude/fields/sweep.h>
+#include <froude/fields/world_field.h>
+
+#include "support/encounter.h"
+#include "support/polygon_generator.h"
+
+namespace froude {
+namespace {
+
+struct Target {
+  std::unique_ptr<DistanceField> field;
+  std::vector<test::OracleEdge> edges;
+};
+
+std::vector<Target> makeTargets(int count) {
+  std::vector<Target> targets;
+  RandomStream random(31, 0);
+  for (int k = 0; k < count; ++k) {
+    const Polygon polygon = test::randomPolygon(static_cast<test::Shape>(k % test::kShapeCount), random);
+    targets.push_back({std::make_unique<DistanceField>(polygon, 0.03), test::oracleEdges(polygon)});
+  }
+  return targets;
+}
+
+struct Encounter {
+  RigidMotion motion;
+  double dt;
+  Vec2 from;
+  Vec2 velocity;
+  double radius;
+  test::Bounce bounce;
+};
+
+/// A bullet of up to 1,000 m/s aimed at a polygon that moves and turns; starts anywhere round it, also inside its
+/// pockets.
+Encounter makeEncounter(RandomStream& random) {
+  Encounter e;
+  e.dt = std::pow(10.0, random.uniform(-4.0, -2.0));
+  e.motion.start =
+      Transform::of({random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)}, random.uniform(0.0, 2.0 * kPi));
+  const double drift = std::pow(10.0, random.uniform(-1.0, 2.0));
+  e.motion.velocity = drift * Vec2(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+  const double turn = random.below(8) == 0 ? random.uniform(-7.0, 7.0) : random.uniform(-0.5, 0.5);
+  e.motion.spin = random.below(4) == 0 ? 0.0 : turn / e.dt;
+  const double speed = std::pow(10.0, random.uniform(0.0, 3.0));
+  const double angle = random.uniform(0.0, 2.0 * kPi);
+  const Vec2 direction(std::cos(angle), std::sin(angle));
+  const double hitTime = random.uniform(0.0, 1.0) * e.dt;
+  const Transform pose = e.motion.at(hitTime);
+  const Vec2 aim = pose.toWorld({random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
+  e.velocity = speed * direction;
+  e.from = aim - hitTime * e.velocity;
+  e.radius = random.below(2) == 0 ? 0.0 : 0.03 * std::pow(10.0, random.uniform(-3.0, 0.0));
+  e.bounce.restitution = 0.5 * random.below(3);
+  e.bounce.friction = 0.5 * random.below(3);
+  return e;
+}
+
+struct Tally {
+  long encounters = 0;
+  long hit = 0;
+  long rested = 0;
+  long leaks = 0;
+};
+
+void meet(const Target& target, const Encounter& e, Tally* tally) {
+  const double start = target.field->sampleExact(e.motion.start.toLocal(e.from)).distance;
+  if (start <= e.radius + 1e-9) return;
+  const auto sweep = [&](double elapsed, const Vec2& from, const Vec2& to) {
+    const RigidMotion rest{e.motion.at(elapsed), e.motion.velocity, e.motion.spin};
+    return sweepDisc(*target.field, rest, e.dt - elapsed, from, to, e.radius);
+  };
+  const auto surface = [&](const Vec2& point, double time) { return e.motion.velocityAt(point, time); };
+  const test::ResolvedPath path = test::resolve(e.from, e.velocity, e.dt, e.bounce, sweep, surface);
+  ++tally->encounters;
+  tally->hit += path.contacts > 0;
+  tally->rested += path.restsFrom >= 0.0;
+  const int leaks = test::countLeaks(target.edges, e.motion, e.dt, path);
+  if (leaks > 0 && tally->leaks < 5) ADD_FAILURE() << "encounter " << tally->encounters << " leaks";
+  tally->leaks += leaks;
+}
+
+TEST(Leaks, none_in_random_swept_encounters_with_thin_concave_and_spinning_polygons) {
+  const bool longRun = std::getenv("FROUDE_LONG") != nullptr;
+  const long wanted = longRun ? 10000000 : 1000000;
+  const std::vector<Target> targets = makeTargets(64);
+  RandomStream random(32, 0);
+  Tally tally;
+  while (tally.encounters < wanted && !HasFailure()) {
+    meet(targets[random.below(64)], makeEncounter(random), &tally);
+  }
+  EXPECT_EQ(tally.leaks, 0);
+  EXPECT_GT(tally.hit, wanted / 4) << "encounters that never touch prove nothing";
+  EXPECT_GT(tally.rested, 0);
+  RecordProperty("encounters", static_cast<int>(tally.encounters));
+  RecordProperty("hit", static_cast<int>(tally.hit));
+  RecordProperty("rested", static_cast<int>(tally.rested));
+}
+
+TEST(Leaks, the_counter_sees_a_path_that_goes_through) {
+  const Polygon plate = Polygon::box({{-0.5, -0.5e-4}, {0.5, 0.5e-4}});
+  const std::vector<test::OracleEdge> edges = test::oracleEdges(plate);
+  test::ResolvedPath through;
+  through.corners = {{0.0, {0.0, 5.0}}, {0.01, {0.1, -5.0}}};
+  EXPECT_EQ(test::countLeaks(edges, RigidMotion{Transform(), {0, 0}, 0.0}, 0.01, through), 1);
+  EXPECT_EQ(test::countLeaks(edges, RigidMotion{Transform(), {0, 0}, 30.0}, 0.01, through), 1);
+  // A resting point that a turning plate sweeps over.
+  test::ResolvedPath resting;
+  resting.corners = {{0.0, {0.3, 0.1}}, {0.01, {0.3, 0.1}}};
+  EXPECT_EQ(test::countLeaks(edges, RigidMotion{Transform(), {0, 0}, 60.0}, 0.01, resting), 1);
+  EXPECT_EQ(test::countLeaks(edges, RigidMotion{Transform(), {0, 0}, -60.0}, 0.01, resting), 0);
+  test::ResolvedPath in;
+  in.corners = {{0.0, {0.0, 1.0}}, {0.01, {0.0, 0.0}}};
+  EXPECT_GE(test::countLeaks(edges, RigidMotion{Transform(), {0, 0}, 0.0}, 0.01, in), 1);
+}
+
+TEST(Leaks, none_among_many_fixed_polygons_and_the_walls_of_a_domain) {
+  RandomStream random(33, 0);
+  const DomainWalls walls{{{-2.0, -2.0}, {2.0, 2.0}}, {true, true, true, false}};
+  std::vector<Polygon> polygons;
+  std::vector<PlacedPolygon> placed;
+  for (int k = 0; k < 16; ++k)
+    polygons.push_back(test::randomPolygon(static_cast<test::Shape>(k % test::kShapeCount), random));
+  for (int k = 0; k < 16; ++k) {
+    const Vec2 at(-1.5 + k % 4, -1.5 + k / 4);
+    placed.push_back({&polygons[static_cast<std::size_t>(k)], Transform::of(at, random.uniform(0.0, 6.3)), k});
+  }
+  const WorldField world(placed, walls, 0.03);
+  std::vector<test::OracleEdge> edges;
+  for (const FieldEdge& e : world.edges()) edges.push_back({e.a, e.b});
+  long hits = 0;
+  for (int k = 0; k < 60000; ++k) {
+    const Vec2 from(random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0));
+    const double radius = k % 2 == 0 ? 0.0 : random.uniform(0.0, 0.03);
+    if (world.sampleExact(from).distance <= radius) continue;
+    const double angle = random.uniform(0.0, 2.0 * kPi);
+    const double speed = std::pow(10.0, random.uniform(0.0, 3.0));
+    const auto sweep = [&](double, const Vec2& p, const Vec2& q) { return world.sweepDisc(p, q, radius); };
+    const auto surface = [](const Vec2&, double) { return Vec2(0.0, 0.0); };
+    const test::Bounce bounce{0.5 * random.below(3), 0.5 * random.below(3)};
+    const test::ResolvedPath path =
+        test::resolve(from, speed * Vec2(std::cos(angle), std::sin(angle)), 0.01, bounce, sweep, surface);
+    hits += path.contacts;
+    for (std::size_t i = 0; i + 1 < path.corners.size(); ++i) {
+      const Vec2 p = path.corners[i].position;
+      Vec2 q = path.corners[i + 1].position;
+      // Above the open top there is no wall any more.
+      if (q.y() > 2.0) q = p + (2.0 - p.y()) / (q.y() - p.y()) * (q - p);
+      ASSERT_FALSE(test::crosses(edges, p, q)) << k;
+    }
+  }
+  EXPECT_GT(hits, 30000);
+}
+
+}  // namespace
+}  // namespace froude
