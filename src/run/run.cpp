@@ -88,6 +88,7 @@ void tellResult(const Scene& scene, const World& world, const RunRecord& record,
   fmt::print("state {}\n", world.stateHash());
   if (scene.output.png) fmt::print("pictures: {}/frame_*.png ({})\n", folder, record.nextFrame);
   if (!result.film.empty()) fmt::print("film: {}\n", result.film);
+  if (!result.filmNote.empty()) fmt::print(stderr, "{}\n", result.filmNote);
 }
 
 // The last line of all that has a folder, however it ended.
@@ -201,6 +202,7 @@ int resumeInArena(const ResumeOptions& options) {
   const RunFolder folder = RunFolder::open(options.folder);
   const std::unique_ptr<Checkpoint> checkpoint = findCheckpoint(folder);
   Scene scene = scene::load(folder.file("scene.toml"));
+  scene.name = checkpoint->record().sceneName;  // pictures without a title carry it
   scene.world.simd = targetFor(*checkpoint, session, folder.path());
   const double end = session.until.value_or(scene.duration);
   if (checkpoint->time() >= end && isDone(folder)) {

@@ -36,10 +36,10 @@ LoopResult RunLoop::run(double end, const SessionOptions& options, const SignalG
   Progress progress(world_.time(), end, options.quiet);
   const std::chrono::duration<double> interval(scene_.output.checkpoint);
   while (world_.time() < end) {
-    if (signals.pending() != 0) return finish({Status::Interrupted, signals.pending(), {}, {}});
+    if (signals.pending() != 0) return finish({Status::Interrupted, signals.pending(), {}, {}, {}});
     const double before = world_.time();
     const StepReport report = world_.substep();
-    if (!report.ok()) return finish({Status::Unstable, 0, report, {}});
+    if (!report.ok()) return finish({Status::Unstable, 0, report, {}, {}});
     if (!(world_.time() > before)) throw Error(fmt::format("the step at t = {} s did not move time on", before));
     trace(report, options, progress);
     takeOutput();
@@ -49,7 +49,7 @@ LoopResult RunLoop::run(double end, const SessionOptions& options, const SignalG
       writeSummary(Status::Running);
     }
   }
-  return finish({Status::Done, 0, {}, {}});
+  return finish({Status::Done, 0, {}, {}, {}});
 }
 
 void RunLoop::takeOutput() {
@@ -81,7 +81,8 @@ LoopResult RunLoop::finish(LoopResult result) {
     rows_.clear();
     gauges_.atEnd(world_, rows_);
     if (gaugeLog_) gaugeLog_->append(rows_);
-    result.film = frames_->makeFilm();
+    if (scene_.output.png) result.film = frames_->makeFilm();
+    result.filmNote = frames_->filmNote();
   }
   countWallTime();
   writeSummary(result.status);

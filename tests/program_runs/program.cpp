@@ -148,7 +148,7 @@ std::string ProgramTest::hashOfRun(const std::string& scene, const std::string& 
 }
 
 std::string tinyScene() {
-  return R"(format = 1
+  return R"toml(format = 1
 title = "A small dam"
 duration = 0.1
 
@@ -177,11 +177,11 @@ every = 0.025
 [output]
 every = 0.02
 frames = []
-)";
+)toml";
 }
 
 std::string mixedScene() {
-  return R"(format = 1
+  return R"toml(format = 1
 seed = 7
 duration = 0.2
 
@@ -248,7 +248,7 @@ every = 0.007
 [output]
 every = 0.02
 frames = []
-)";
+)toml";
 }
 
 }  // namespace froude::testing

@@ -101,7 +101,7 @@ TEST_F(Output, gauges_have_a_row_at_the_start_at_every_multiple_and_at_the_end) 
   EXPECT_EQ(line.rfind("t,front,energy.", 0), 0u) << line;
   std::vector<double> times;
   while (std::getline(rows, line)) times.push_back(std::stod(line));
-  ASSERT_GE(times.size(), 15u);  // 0, 0.01 … 0.1; 0.025 and 0.075; perhaps an end beyond
+  ASSERT_GE(times.size(), 13u);  // 0, 0.01 … 0.1; 0.025 and 0.075; perhaps an end beyond
   EXPECT_EQ(times.front(), 0.0);
   EXPECT_DOUBLE_EQ(times.back(), summary("o")["simulated_seconds"].get<double>());
   for (std::size_t i = 1; i < times.size(); ++i) EXPECT_LT(times[i - 1], times[i]);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 std::string endless(const std::string& scene) {
   std::string text = scene;
   const std::size_t at = text.find("duration = 0.");
-  return text.replace(at, text.find('\n', at) - at, "duration = 1000000.0");
+  return text.replace(at, text.find('\n', at) - at, "duration = 1000.0");
 }
 
 class Resume : public ProgramTest {
@@ -27,7 +27,7 @@ class Resume : public ProgramTest {
     Words pictures = files(straight);
     std::erase_if(pictures, [](const std::string& file) { return !file.ends_with(".png"); });
     for (const std::string& file : pictures) {
-      EXPECT_EQ(read(straight + "/" + file), read(resumed + "/" + file)) << file;
+      EXPECT_TRUE(read(straight + "/" + file) == read(resumed + "/" + file)) << file;
     }
     const auto first = summary(straight), second = summary(resumed);
     for (const char* key : {"substeps", "particles", "simulated_seconds", "frames", "volume_error", "energy_drift",
