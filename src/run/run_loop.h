@@ -23,9 +23,10 @@ namespace froude::run {
 /// How a loop ended.
 struct LoopResult {
   Status status = Status::Done;
-  int signal = 0;     // Interrupted: by which
-  StepReport report;  // Unstable: why
-  std::string film;   // Done: the film, if one was made
+  int signal = 0;        // Interrupted: by which
+  StepReport report;     // Unstable: why
+  std::string film;      // Done: the film, if one was made
+  std::string filmNote;  // Done: why none was
 };
 
 /// Owns the open files of a run and what the run remembers. Output never alters a step: nothing that the loop does
