@@ -27,7 +27,7 @@ enum class Species { Fluid, Bullet };
 
 /// The box of the simulation. What leaves it is retired and counted.
 struct DomainDef {
-  Box box;                            // [m]
+  Box box;                                             // [m]
   std::array<bool, 4> closed{true, true, true, true};  // left, right, bottom, top: a wall stands there
   bool periodicX = false, periodicY = false;           // such a pair of sides has no wall
   Slip slip = Slip::Free;
@@ -46,33 +46,33 @@ struct BodyDef {
   Vec2 position{0, 0};                   // of the body's origin [m]
   double angle = 0.0;                    // [rad]
   Motion motion = Motion::Fixed;
-  double density = 1000.0;               // [kg/m²]
-  Vec2 velocity{0, 0};                   // of the origin (scripted) or the centre of mass (free) [m/s]
-  double spin = 0.0;                     // [rad/s]
+  double density = 1000.0;  // [kg/m²]
+  Vec2 velocity{0, 0};      // of the origin (scripted) or the centre of mass (free) [m/s]
+  double spin = 0.0;        // [rad/s]
   double friction = 0.3;
   double restitution = 0.1;
-  std::optional<Slip> slip;              // default: the domain's
-  double surfaceVelocity = 0.0;          // along the edge, counter-clockwise [m/s]
+  std::optional<Slip> slip;      // default: the domain's
+  double surfaceVelocity = 0.0;  // along the edge, counter-clockwise [m/s]
   std::uint32_t group = 1, collidesWith = ~0u;
-  std::vector<ScriptPiece> script;       // in order; a scripted body without script keeps velocity and spin
+  std::vector<ScriptPiece> script;  // in order; a scripted body without script keeps velocity and spin
 };
 
 /// The model's keys. Left-out values are each model's documented defaults.
 struct FluidDef {
   std::string model = "pbf";
-  double spacing = 0.01;                 // dx [m]; a particle's mass is density·dx²
-  double density = 1000.0;               // rest density [kg/m²]
-  double viscosity = 1.0e-6;             // kinematic [m²/s]
-  double surfaceTension = 0.0;           // [N]
-  double contactAngle = kPi / 2;         // [rad]
-  int sweeps = 0;                        // pbf: pressure sweeps a sub-step; 0: the model's default
-  double courant = 0.0;                  // largest v·dt/support radius; 0: the model's default
+  double spacing = 0.01;          // dx [m]; a particle's mass is density·dx²
+  double density = 1000.0;        // rest density [kg/m²]
+  double viscosity = 1.0e-6;      // kinematic [m²/s]
+  double surfaceTension = 0.0;    // [N]
+  double contactAngle = kPi / 2;  // [rad]
+  int sweeps = 0;                 // pbf: pressure sweeps a sub-step; 0: the model's default
+  double courant = 0.0;           // largest v·dt/support radius; 0: the model's default
   std::uint32_t group = 1, collidesWith = ~0u;
 };
 
 struct BulletDef {
-  double radius = 0.002;                 // [m]
-  double density = 1000.0;               // [kg/m²]; mass = density·π·radius²
+  double radius = 0.002;    // [m]
+  double density = 1000.0;  // [kg/m²]; mass = density·π·radius²
   double friction = 0.0;
   double restitution = 0.5;
   std::uint32_t group = 1, collidesWith = ~0u;
@@ -84,19 +84,19 @@ struct SinkDef {
 
 /// Limits that stop a run as unstable, and how hard it is tried before (design of the step: undo and halve).
 struct StabilityLimits {
-  double compression = 0.30;             // largest density/rest density − 1
-  double displacement = 1.0;             // largest travel in a sub-step, in support radii
-  double energyGain = 0.20;              // of the scene's energy scale
+  double compression = 0.30;  // largest density/rest density − 1
+  double displacement = 1.0;  // largest travel in a sub-step, in support radii
+  double energyGain = 0.20;   // of the scene's energy scale
   int halvings = 8;
 };
 
 /// Everything that `World` is built from.
 struct WorldDef {
   DomainDef domain;
-  Vec2 gravity{0.0, -9.81};              // [m/s²], used where `gravityField` is empty
+  Vec2 gravity{0.0, -9.81};  // [m/s²], used where `gravityField` is empty
   VectorField gravityField;
   std::uint64_t seed = 1;
-  std::optional<double> timeStep;        // the literal sub-step [s]; empty: adaptive
+  std::optional<double> timeStep;  // the literal sub-step [s]; empty: adaptive
   std::optional<FluidDef> fluid;
   std::optional<BulletDef> bullet;
   std::vector<BodyDef> bodies;

@@ -9,11 +9,11 @@
 namespace froude {
 
 struct ModelCard {
-  std::string name;                       // as in a scene
+  std::string name;  // as in a scene
   std::string title;
-  std::string models;                     // what it models
+  std::string models;  // what it models
   std::string doesNotModel;
-  std::vector<std::string> stepBounds;    // each with its formula
+  std::vector<std::string> stepBounds;  // each with its formula
   std::vector<std::string> knownFailures;
   std::vector<std::string> references;
 };

@@ -28,7 +28,8 @@ std::span<const ModelCard> modelCards() {
         "pressure noise: of the order of a tenth of the dynamic pressure in violent flow",
         "no tension: an accelerated stream breaks up into strands of particles"},
        {"M. Macklin, M. Mueller: Position based fluids. ACM Trans. Graph. 32(4), 2013",
-        "J. Bender et al.: Volume maps. SIGGRAPH MIG 2019 (walls); M. Ferrand et al.: Int. J. Numer. Methods Fluids 71, "
+        "J. Bender et al.: Volume maps. SIGGRAPH MIG 2019 (walls); M. Ferrand et al.: Int. J. Numer. Methods Fluids "
+        "71, "
         "2013"}},
   };
   return kCards;

@@ -31,39 +31,39 @@ std::string_view name(Trouble trouble);
 
 /// One accepted sub-step, or the reason why none was.
 struct StepReport {
-  double dt = 0.0;              // time advanced [s]
-  int substeps = 0;             // accepted sub-steps
-  int rejected = 0;             // undone and halved
+  double dt = 0.0;                         // time advanced [s]
+  int substeps = 0;                        // accepted sub-steps
+  int rejected = 0;                        // undone and halved
   StepLimit limit = StepLimit::Requested;  // of the last sub-step
   Trouble trouble = Trouble::None;         // ≠ None: the state is the last sound one, and time stands
-  double troubleValue = 0.0;    // what was measured …
-  double troubleLimit = 0.0;    // … against what
-  Vec2 troubleAt{0, 0};         // where [m], when known
+  double troubleValue = 0.0;               // what was measured …
+  double troubleLimit = 0.0;               // … against what
+  Vec2 troubleAt{0, 0};                    // where [m], when known
   bool ok() const { return trouble == Trouble::None; }
 };
 
 /// Totals since the start; saved with the state.
 struct Ledger {
-  std::uint64_t steps = 0;               // calls of step() or substep()
-  std::uint64_t substeps = 0;            // accepted
+  std::uint64_t steps = 0;     // calls of step() or substep()
+  std::uint64_t substeps = 0;  // accepted
   std::uint64_t rejected = 0;
-  std::uint64_t particleSteps = 0;       // one particle in one sub-step
-  std::uint64_t sweeps = 0;              // pressure sweeps
+  std::uint64_t particleSteps = 0;  // one particle in one sub-step
+  std::uint64_t sweeps = 0;         // pressure sweeps
   std::uint64_t leaks = 0, crushed = 0, wallHits = 0, quarantined = 0;
-  std::uint64_t retired = 0;             // left the domain
+  std::uint64_t retired = 0;  // left the domain
   std::uint64_t sunk = 0, expired = 0, emitted = 0, recycled = 0, refused = 0;
   std::array<std::uint64_t, static_cast<std::size_t>(StepLimit::kCount)> limits{};
-  double maxDensityError = 0.0;          // largest compression over particles and steps
-  double densityErrorTime = 0.0;         // ∫ mean compression dt [s]
-  double energy0 = 0.0;                  // at the start [J/m]
-  double maxKinetic = 0.0;               // [J/m]
-  double work = 0.0;                     // done from outside: scripted bodies, surface velocity, emission − retirement [J/m]
-  double dissipation = 0.0;              // energy lost so far [J/m]
-  double energyDrift = 0.0;              // largest (E − E0 − work)/scale so far, ≥ 0
+  double maxDensityError = 0.0;   // largest compression over particles and steps
+  double densityErrorTime = 0.0;  // ∫ mean compression dt [s]
+  double energy0 = 0.0;           // at the start [J/m]
+  double maxKinetic = 0.0;        // [J/m]
+  double work = 0.0;              // done from outside: scripted bodies, surface velocity, emission − retirement [J/m]
+  double dissipation = 0.0;       // energy lost so far [J/m]
+  double energyDrift = 0.0;       // largest (E − E0 − work)/scale so far, ≥ 0
   double massEmitted = 0.0, massRetired = 0.0;  // fluid [kg/m]
-  Vec2 momentum0{0, 0};                  // at the start [kg/s]
-  Vec2 impulse{0, 0};                    // ∫ gravity + walls + bodies + emission − retirement [kg/s]
-  double maxSpeed = 0.0;                 // over particles and steps [m/s]
+  Vec2 momentum0{0, 0};                         // at the start [kg/s]
+  Vec2 impulse{0, 0};                           // ∫ gravity + walls + bodies + emission − retirement [kg/s]
+  double maxSpeed = 0.0;                        // over particles and steps [m/s]
 };
 
 }  // namespace froude

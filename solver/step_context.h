@@ -72,10 +72,10 @@ struct StepStats {
   Trouble trouble = Trouble::None;
   double troubleValue = 0.0, troubleLimit = 0.0;
   Vec2 troubleAt{0.0, 0.0};
-  double maxCompression = 0.0;   // largest ρ/ρ0 − 1, over-dense starts included
-  double meanCompression = 0.0;  // mean of max(0, ρ/ρ0 − 1)
-  double gravityWork = 0.0;      // of a gravity field; constant gravity is in the potential energy [J/m]
-  Vec2 gravityImpulse{0.0, 0.0}; // [kg/s]
+  double maxCompression = 0.0;    // largest ρ/ρ0 − 1, over-dense starts included
+  double meanCompression = 0.0;   // mean of max(0, ρ/ρ0 − 1)
+  double gravityWork = 0.0;       // of a gravity field; constant gravity is in the potential energy [J/m]
+  Vec2 gravityImpulse{0.0, 0.0};  // [kg/s]
   int sweeps = 0;
   std::uint64_t wallHits = 0;
   std::uint64_t leaks = 0;

@@ -171,7 +171,8 @@ void World::filledFraction(std::span<const Vec2> points, std::span<double> phi) 
   impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
   const CollisionFilter filter = fluidFilter(impl_->def);
   parallelFor(points.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) phi[i] = impl_->query.filledFraction(*impl_->obstacles, filter, points[i]);
+    for (std::size_t i = begin; i < end; ++i)
+      phi[i] = impl_->query.filledFraction(*impl_->obstacles, filter, points[i]);
   });
 }
 

@@ -17,22 +17,22 @@ namespace froude {
 /// State of a body as seen from outside.
 struct BodyState {
   Transform transform;
-  double angle = 0.0;        // [rad], not wrapped
-  Vec2 velocity{0, 0};       // of the origin [m/s]
-  double spin = 0.0;         // [rad/s]
-  Vec2 force{0, 0};          // of particles and fluid on the body, over the last sub-step [N/m]
-  double torque = 0.0;       // about the centre of mass [N]
+  double angle = 0.0;   // [rad], not wrapped
+  Vec2 velocity{0, 0};  // of the origin [m/s]
+  double spin = 0.0;    // [rad/s]
+  Vec2 force{0, 0};     // of particles and fluid on the body, over the last sub-step [N/m]
+  double torque = 0.0;  // about the centre of mass [N]
 };
 
 /// Sums over particles (one species or all), at the present time.
 struct Totals {
   std::size_t count = 0;
-  double mass = 0.0;         // [kg/m]
-  double kinetic = 0.0;      // [J/m]
-  double potential = 0.0;    // from the lowest point of the domain, constant gravity only [J/m]
-  Vec2 momentum{0, 0};       // [kg/s]
-  double angular = 0.0;      // about the world's origin
-  double maxSpeed = 0.0;     // [m/s]
+  double mass = 0.0;       // [kg/m]
+  double kinetic = 0.0;    // [J/m]
+  double potential = 0.0;  // from the lowest point of the domain, constant gravity only [J/m]
+  Vec2 momentum{0, 0};     // [kg/s]
+  double angular = 0.0;    // about the world's origin
+  double maxSpeed = 0.0;   // [m/s]
 };
 
 /// Bytes that a world of this definition and so many particles will take; for predictions and refusals.
@@ -59,14 +59,15 @@ class World {
   const WorldDef& definition() const;
   const Ledger& ledger() const;
 
-  /// Live particles in cell order; the pools' columns are the state itself. Null when the scene has none of the species.
-  /// Fluid columns besides x, y, vx, vy: "pressure" (float, p/density in m²/s²), "density" (float, relative to rest).
+  /// Live particles in cell order; the pools' columns are the state itself. Null when the scene has none of the
+  /// species. Fluid columns besides x, y, vx, vy: "pressure" (float, p/density in m²/s²), "density" (float, relative to
+  /// rest).
   const ParticlePool* fluid() const;
   const ParticlePool* bullets() const;
   ParticlePool* fluid();
   ParticlePool* bullets();
-  double fluidMass() const;    // of one particle [kg/m]
-  double bulletMass() const;   // [kg/m]
+  double fluidMass() const;   // of one particle [kg/m]
+  double bulletMass() const;  // [kg/m]
 
   std::size_t bodyCount() const;
   const BodyState& body(std::size_t index) const;
@@ -76,8 +77,8 @@ class World {
 
   Totals totals(std::optional<Species> species = std::nullopt) const;
 
-  /// Filled fraction φ at points: Σ (m/ρ0) W + λ, hidden particles masked. Outside solids only; inside a solid it is NaN.
-  /// Valid after construction and after each step. Cost: a neighbour query a point; parallel over points.
+  /// Filled fraction φ at points: Σ (m/ρ0) W + λ, hidden particles masked. Outside solids only; inside a solid it is
+  /// NaN. Valid after construction and after each step. Cost: a neighbour query a point; parallel over points.
   void filledFraction(std::span<const Vec2> points, std::span<double> phi) const;
   /// Shepard means over one support radius at a point: pressure [N/m] and velocity; NaN where no particle is near.
   double pressureAt(const Vec2& point) const;

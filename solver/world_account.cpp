@@ -57,8 +57,13 @@ Totals World::Impl::totalsOf(const ParticlePool& pool, double mass) const {
     s[3] += vy[i];
     s[4] += x[i] * vy[i] - y[i] * vx[i];
   });
-  return {pool.size(), mass * static_cast<double>(pool.size()), mass * sum[0], mass * sum[1],
-          mass * Vec2(sum[2], sum[3]), mass * sum[4], largestSpeed(pool)};
+  return {pool.size(),
+          mass * static_cast<double>(pool.size()),
+          mass * sum[0],
+          mass * sum[1],
+          mass * Vec2(sum[2], sum[3]),
+          mass * sum[4],
+          largestSpeed(pool)};
 }
 
 Balance World::Impl::balance() const {
@@ -86,9 +91,7 @@ void World::Impl::openAccounts() {
   ledger.maxKinetic = present.kinetic;
 }
 
-double World::Impl::energyScale() const {
-  return std::max({std::abs(ledger.energy0), ledger.maxKinetic, 1e-300});
-}
+double World::Impl::energyScale() const { return std::max({std::abs(ledger.energy0), ledger.maxKinetic, 1e-300}); }
 
 double World::Impl::outsideWork(const StepStats& stats, const Balance& after, double dt) const {
   double work = stats.gravityWork + impulses.work();

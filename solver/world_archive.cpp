@@ -17,10 +17,10 @@ void archiveFields(Archive& a, std::string_view name, const std::array<T*, N>& f
 }
 
 void archiveLedger(Archive& a, Ledger& l) {
-  archiveFields(a, "counters",
-                std::array{&l.steps, &l.substeps, &l.rejected, &l.particleSteps, &l.sweeps, &l.leaks, &l.crushed,
-                           &l.wallHits, &l.quarantined, &l.retired, &l.sunk, &l.expired, &l.emitted, &l.recycled,
-                           &l.refused});
+  archiveFields(
+      a, "counters",
+      std::array{&l.steps, &l.substeps, &l.rejected, &l.particleSteps, &l.sweeps, &l.leaks, &l.crushed, &l.wallHits,
+                 &l.quarantined, &l.retired, &l.sunk, &l.expired, &l.emitted, &l.recycled, &l.refused});
   a.bytes("limits", l.limits.data(), sizeof l.limits[0], l.limits.size());
   archiveFields(a, "sums",
                 std::array{&l.maxDensityError, &l.densityErrorTime, &l.energy0, &l.maxKinetic, &l.work, &l.dissipation,
@@ -38,9 +38,9 @@ void archiveBodyStates(Archive& a, std::vector<BodyState>& states, AlignedArray<
   flat.resize(kFields * states.size());
   double* v = flat.data();
   for (const BodyState& s : states) {
-    for (const double value : {s.transform.position.x(), s.transform.position.y(), s.transform.rotation.c,
-                               s.transform.rotation.s, s.angle, s.velocity.x(), s.velocity.y(), s.spin, s.force.x(),
-                               s.force.y(), s.torque}) {
+    for (const double value :
+         {s.transform.position.x(), s.transform.position.y(), s.transform.rotation.c, s.transform.rotation.s, s.angle,
+          s.velocity.x(), s.velocity.y(), s.spin, s.force.x(), s.force.y(), s.torque}) {
       *v++ = value;
     }
   }

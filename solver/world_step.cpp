@@ -5,9 +5,9 @@
 namespace froude {
 namespace {
 
-constexpr double kLargestTurn = 0.5;        // [rad] of a body in a sub-step
-constexpr double kLargestBodyTravel = 0.25; // of the support radius in a sub-step, where there is a fluid
-constexpr double kFreeStep = 0.01;          // [s] where nothing binds the step
+constexpr double kLargestTurn = 0.5;         // [rad] of a body in a sub-step
+constexpr double kLargestBodyTravel = 0.25;  // of the support radius in a sub-step, where there is a fluid
+constexpr double kFreeStep = 0.01;           // [s] where nothing binds the step
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
 

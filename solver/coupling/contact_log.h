@@ -1,4 +1,5 @@
-// Contacts that particles made with obstacles in a parallel loop, kept by block so that their sums do not depend on threads.
+// Contacts that particles made with obstacles in a parallel loop, kept by block so that their sums do not depend on
+// threads.
 #pragma once
 
 #include <vector>
@@ -13,8 +14,8 @@ namespace froude {
 /// One contact: what a particle's velocity changed by.
 struct LoggedContact {
   int body = -1;
-  double atX = 0.0, atY = 0.0;          // [m]
-  double changeX = 0.0, changeY = 0.0;  // [m/s]
+  double atX = 0.0, atY = 0.0;            // [m]
+  double changeX = 0.0, changeY = 0.0;    // [m/s]
   double surfaceX = 0.0, surfaceY = 0.0;  // velocity of the obstacle's surface there [m/s]
 };
 
@@ -33,8 +34,8 @@ class ContactLog {
       add(particle, p, p.change);
     }
   }
-  /// Adds what contacts did to the mean velocity of the path, for methods that take velocities from positions: the sum of
-  /// what is added is exactly (end − start)/dt − v.
+  /// Adds what contacts did to the mean velocity of the path, for methods that take velocities from positions: the sum
+  /// of what is added is exactly (end − start)/dt − v.
   void addMean(std::size_t particle, const PathResult& path, const Vec2& start, const Vec2& v, double dt) {
     if (path.contacts == 0) return;
     Vec2 rest = (path.x - start) / dt - v;

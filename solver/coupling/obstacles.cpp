@@ -3,7 +3,8 @@
 namespace froude {
 namespace {
 
-constexpr int kCoarseCells = 64;  // along the longer side of the domain: enough to part bodies, cheap to rebuild each step
+constexpr int kCoarseCells =
+    64;  // along the longer side of the domain: enough to part bodies, cheap to rebuild each step
 
 }  // namespace
 
@@ -11,11 +12,19 @@ Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band
   std::vector<PlacedPolygon> placed;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyDef& def = bodies.definition(i);
-    surfaces_.push_back({def.surfaceVelocity, def.friction, def.restitution,
-                         bodies.moves(i) ? static_cast<int>(moving_.size()) : -1, {def.group, def.collidesWith}});
+    surfaces_.push_back({def.surfaceVelocity,
+                         def.friction,
+                         def.restitution,
+                         bodies.moves(i) ? static_cast<int>(moving_.size()) : -1,
+                         {def.group, def.collidesWith}});
     const Transform pose = bodies.motion(i).transform();
     if (bodies.moves(i)) {
-      moving_.push_back({static_cast<int>(i), std::make_unique<DistanceField>(*def.shape, band), {}, pose, {}, def.group,
+      moving_.push_back({static_cast<int>(i),
+                         std::make_unique<DistanceField>(*def.shape, band),
+                         {},
+                         pose,
+                         {},
+                         def.group,
                          def.collidesWith});
     } else {
       placed.push_back({def.shape.get(), pose, static_cast<std::int32_t>(i), def.group, def.collidesWith});
@@ -55,7 +64,9 @@ void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {
     m.swept = box.grown(std::sqrt(farthest) * (1.0 - std::cos(halfTurn)));
   }
   auto cellRange = [&](const Box& box, int& x0, int& x1, int& y0, int& y1) {
-    auto clampTo = [](double v, int n) { return static_cast<int>(std::clamp(std::floor(v), 0.0, static_cast<double>(n - 1))); };
+    auto clampTo = [](double v, int n) {
+      return static_cast<int>(std::clamp(std::floor(v), 0.0, static_cast<double>(n - 1)));
+    };
     x0 = clampTo((box.min.x() - coarseOrigin_.x()) / coarseCell_, coarseNx_);
     x1 = clampTo((box.max.x() - coarseOrigin_.x()) / coarseCell_, coarseNx_);
     y0 = clampTo((box.min.y() - coarseOrigin_.y()) / coarseCell_, coarseNy_);
@@ -82,7 +93,9 @@ void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {
 }
 
 std::span<const std::uint32_t> Obstacles::movingNear(const Vec2& x) const {
-  auto index = [](double v, int n) { return static_cast<int>(v > 0.0 ? std::min(v, static_cast<double>(n - 1)) : 0.0); };
+  auto index = [](double v, int n) {
+    return static_cast<int>(v > 0.0 ? std::min(v, static_cast<double>(n - 1)) : 0.0);
+  };
   const int cx = index((x.x() - coarseOrigin_.x()) / coarseCell_, coarseNx_);
   const int cy = index((x.y() - coarseOrigin_.y()) / coarseCell_, coarseNy_);
   const auto c = static_cast<std::size_t>(cy * coarseNx_ + cx);
@@ -157,8 +170,8 @@ void Obstacles::sweepMoving(const Vec2& from, const Vec2& to, double t0, double 
     const SweepHit hit = sweepDisc(*m.field, motion, share * dt_, from, to, radius);
     if (!hit.hit || (best.hit && t0 + hit.time * share >= best.time)) return;
     const double time = t0 + hit.time * share;
-    best = {true, time, hit.center, hit.normal, m.motion.velocityAt(hit.point, time * dt_), m.body, 0.0, 0.0,
-            hit.startedInside};
+    best = {true,   time, hit.center, hit.normal,       m.motion.velocityAt(hit.point, time * dt_),
+            m.body, 0.0,  0.0,        hit.startedInside};
     touch(best, m.body);
   };
   // A path within one coarse cell and the reach needs that cell's bodies only; a longer one looks at all.

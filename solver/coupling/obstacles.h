@@ -1,4 +1,5 @@
-// All that particles meet: the baked field of the walls and fixed polygons, and the moving polygons found by a coarse grid.
+// All that particles meet: the baked field of the walls and fixed polygons, and the moving polygons found by a coarse
+// grid.
 #pragma once
 
 #include <memory>

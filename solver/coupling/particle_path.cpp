@@ -33,9 +33,10 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
       break;
     }
     const Vec2 before = velocity;
-    velocity = disc.slides ? bounced(velocity, hit.surfaceVelocity, hit.normal, 0.0, 0.0)
-                           : bounced(velocity, hit.surfaceVelocity, hit.normal, std::max(disc.restitution, hit.restitution),
-                                     std::sqrt(disc.friction * hit.friction));
+    velocity = disc.slides
+                   ? bounced(velocity, hit.surfaceVelocity, hit.normal, 0.0, 0.0)
+                   : bounced(velocity, hit.surfaceVelocity, hit.normal, std::max(disc.restitution, hit.restitution),
+                             std::sqrt(disc.friction * hit.friction));
     at = hit.center;
     t = hit.time;
     const bool last = result.contacts == kMaxBounces;

@@ -13,7 +13,7 @@ struct DiscContact {
   double restitution = 0.0;  // with a body's: the larger of the two
   double friction = 0.0;     // Coulomb coefficient; with a body's: the geometric mean
   CollisionFilter filter;
-  bool slides = false;       // fluids: no bounce and no friction, whatever the body's
+  bool slides = false;  // fluids: no bounce and no friction, whatever the body's
 };
 
 /// Contacts after which a particle rests at its last one and moves with it (see `followPath`).
@@ -21,23 +21,23 @@ inline constexpr int kMaxBounces = 8;
 
 /// What happened on the way.
 struct PathResult {
-  Vec2 x{0, 0};              // position at the end of the sub-step [m]
-  Vec2 v{0, 0};              // velocity at the end [m/s]
+  Vec2 x{0, 0};  // position at the end of the sub-step [m]
+  Vec2 v{0, 0};  // velocity at the end [m/s]
   int contacts = 0;
-  bool crushed = false;      // no free place: squeezed between bodies
+  bool crushed = false;  // no free place: squeezed between bodies
   struct Impulse {
     int body = -1;
-    Vec2 at{0, 0};           // contact point [m]
-    Vec2 change{0, 0};       // of the particle's velocity [m/s]
+    Vec2 at{0, 0};               // contact point [m]
+    Vec2 change{0, 0};           // of the particle's velocity [m/s]
     Vec2 surfaceVelocity{0, 0};  // of the obstacle there [m/s]
-    double time = 0.0;       // fraction of the sub-step at which it happened
+    double time = 0.0;           // fraction of the sub-step at which it happened
   };
   std::array<Impulse, kMaxBounces + 1> impulses;  // the first `contacts`
 };
 
-/// Moves a disc from x with velocity v for dt [s]. At each contact the velocity relative to the surface loses its normal
-/// part (times 1 + restitution) and, by friction, some of its tangential part. After kMaxBounces contacts the disc rests
-/// at the last one and moves with that surface. Fills `result` (not returned by value: it is large).
+/// Moves a disc from x with velocity v for dt [s]. At each contact the velocity relative to the surface loses its
+/// normal part (times 1 + restitution) and, by friction, some of its tangential part. After kMaxBounces contacts the
+/// disc rests at the last one and moves with that surface. Fills `result` (not returned by value: it is large).
 void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double dt, const DiscContact& disc,
                 PathResult& result);
 

@@ -9,9 +9,9 @@
 
 namespace froude {
 
-/// A frame of cells of at least `cellSize` [m] around the positions, on the lattice of cells that starts at the domain's
-/// corner; along periodic axes the whole period. Work and memory follow the fluid, not the domain; where a stray particle
-/// would make it too many cells (more than 16 a particle and 65,536), the cells are larger.
+/// A frame of cells of at least `cellSize` [m] around the positions, on the lattice of cells that starts at the
+/// domain's corner; along periodic axes the whole period. Work and memory follow the fluid, not the domain; where a
+/// stray particle would make it too many cells (more than 16 a particle and 65,536), the cells are larger.
 GridFrame fluidFrame(const DomainDef& domain, std::span<const double> x, std::span<const double> y, double cellSize);
 
 /// Cells that hold particles, in order. Reuses the memory of `cells`.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <froude/base/aligned.h>
-#include <froude/particles/pool.h>
 #include <froude/particles/cell_grid.h>
+#include <froude/particles/pool.h>
 #include <froude/solver/coupling/obstacles.h>
 #include <froude/solver/fluid/kernel.h>
 

@@ -1,10 +1,10 @@
 // The kernel in two dimensions, in units of the particle spacing dx: with m = 1 − q²/4, q = r/dx < 2,
 //     w = (4/5)·(5/4π)·m⁴ + (1/5)·(11/4π)·m¹⁰ = m⁴ (1 + 0.55 m⁶)/π,     ∫ w dA = 1.
 // Why this one: it is a polynomial in q², so that a pair costs no square root and a wall no logarithm. m⁴ alone has a
-// negative lobe in its Fourier transform, and particles pair up under pressure (seen: bottom corners of a tank at rest);
-// a fifth of m¹⁰ makes it positive, as Wendland's kernels are. On the square lattice of spacing 1 it sums to 1.0160, on the
-// hexagonal one of the same density to 1.0178: the sum over particles is divided by their mean, so that a particle's mass
-// density·dx² gives the rest density in both. See docs/decisions/.
+// negative lobe in its Fourier transform, and particles pair up under pressure (seen: bottom corners of a tank at
+// rest); a fifth of m¹⁰ makes it positive, as Wendland's kernels are. On the square lattice of spacing 1 it sums
+// to 1.0160, on the hexagonal one of the same density to 1.0178: the sum over particles is divided by their mean, so
+// that a particle's mass density·dx² gives the rest density in both. See docs/decisions/.
 #pragma once
 
 #include <froude/base/types.h>

@@ -1,8 +1,9 @@
 // Lattice coordinates: positions as whole multiples of dx·2⁻²³ in 32-bit integers that wrap around.
-// A difference of two of them is exact for any pair nearer than 256 spacings, however large the domain and however far it
-// is from the origin; as a float it then has the full 24 bits. So pair loops run on 4 bytes a coordinate at the precision
-// that float has near the origin, everywhere. (Lost against it: float from a cell's corner, which needs an offset for each
-// run of candidates; plain float, which is off by 1e-3 dx at 10,000 dx from the origin; double, twice the bytes.)
+// A difference of two of them is exact for any pair nearer than 256 spacings, however large the domain and however far
+// it is from the origin; as a float it then has the full 24 bits. So pair loops run on 4 bytes a coordinate at the
+// precision that float has near the origin, everywhere. (Lost against it: float from a cell's corner, which needs an
+// offset for each run of candidates; plain float, which is off by 1e-3 dx at 10,000 dx from the origin; double, twice
+// the bytes.)
 #pragma once
 
 #include <cmath>

@@ -14,15 +14,16 @@ namespace froude {
 
 /// Pairs whose connecting segment crosses a wall: bit k of a run's words is set where candidate k is visible.
 struct HiddenPairs {
-  const std::int32_t* offset = nullptr;   // per particle: first word, −1 where all candidates are visible; null: no walls
-  const std::uint64_t* words = nullptr;   // per run ceil(length/64) words
+  const std::int32_t* offset =
+      nullptr;  // per particle: first word, −1 where all candidates are visible; null: no walls
+  const std::uint64_t* words = nullptr;  // per run ceil(length/64) words
 };
 
 /// What all loops of a sub-step share.
 struct PairFrame {
   const CellGrid* grid = nullptr;
-  std::span<const std::uint32_t> cells;   // those that hold particles
-  const std::int32_t* x = nullptr;        // lattice coordinates
+  std::span<const std::uint32_t> cells;  // those that hold particles
+  const std::int32_t* x = nullptr;       // lattice coordinates
   const std::int32_t* y = nullptr;
   std::int32_t periodX = 0, periodY = 0;  // lattice units
   HiddenPairs hidden;
@@ -31,32 +32,32 @@ struct PairFrame {
 /// Density at the present coordinates: density = Σ W + λ + g·s, s the displacement since the walls were integrated.
 /// With `diagonal` also the diagonal of the pressure system, (S+g)·(S+2g) + Σ|∇W|², S = Σ∇W.
 struct DensityLoop {
-  const float* lambda = nullptr;          // null: no walls near any particle
-  const float* wallX = nullptr;           // g [1/dx]
+  const float* lambda = nullptr;  // null: no walls near any particle
+  const float* wallX = nullptr;   // g [1/dx]
   const float* wallY = nullptr;
-  const float* shiftX = nullptr;          // s
+  const float* shiftX = nullptr;  // s
   const float* shiftY = nullptr;
   float* density = nullptr;
-  float* diagonal = nullptr;              // may be null
+  float* diagonal = nullptr;  // may be null
 };
 
 /// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it. Behind the wall the
 /// pressure rises along it as in front: of the component along the wall the share λ is missing and is made up for.
 struct DisplacementLoop {
-  const float* pressure = nullptr;        // κ = p·dt²/(ρ dx²), no unit
-  const float* wallX = nullptr;           // null: no walls
+  const float* pressure = nullptr;  // κ = p·dt²/(ρ dx²), no unit
+  const float* wallX = nullptr;     // null: no walls
   const float* wallY = nullptr;
-  const float* tangent = nullptr;         // λ/((1 − λ)·|g|²)
-  float* shiftX = nullptr;                // in and out
+  const float* tangent = nullptr;  // λ/((1 − λ)·|g|²)
+  float* shiftX = nullptr;         // in and out
   float* shiftY = nullptr;
-  std::int32_t* newX = nullptr;           // written: PairFrame::x plus the new displacement
+  std::int32_t* newX = nullptr;  // written: PairFrame::x plus the new displacement
   std::int32_t* newY = nullptr;
 };
 
 /// Relative velocity smoothing and laminar viscosity: change = Σ weight(q)·(vⱼ − vᵢ), weight = a·W + b·(−F),
 /// F = (dW/dq)/q. a: XSPH; b: Morris' laminar term, 2ν dt/dx².
 struct ViscosityLoop {
-  const float* vx = nullptr;              // [m/s]
+  const float* vx = nullptr;  // [m/s]
   const float* vy = nullptr;
   float a = 0.0f, b = 0.0f;
   float* changeX = nullptr;

@@ -62,8 +62,7 @@ void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin,
     loop.density[i] = kNorm * sum + wall;
     if (loop.diagonal != nullptr) {
       const float px = -2.0f * kNorm * sx, py = -2.0f * kNorm * sy;
-      loop.diagonal[i] = (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) +
-                         4.0f * kNorm * kNorm * squares;
+      loop.diagonal[i] = (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) + 4.0f * kNorm * kNorm * squares;
     }
   });
 }
@@ -99,8 +98,7 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
     forEachPair(frame, cell, i, [&](std::uint32_t j, float, float, float m) {
       const float m3 = m * m * m;
       const float m6 = m3 * m3;
-      const float weight =
-          kNorm * m3 * (loop.a * m * (1.0f + kTail * m6) + 2.0f * loop.b * (1.0f + 2.5f * kTail * m6));
+      const float weight = kNorm * m3 * (loop.a * m * (1.0f + kTail * m6) + 2.0f * loop.b * (1.0f + 2.5f * kTail * m6));
       sx += weight * (loop.vx[j] - vx);
       sy += weight * (loop.vy[j] - vy);
     });

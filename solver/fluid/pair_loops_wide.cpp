@@ -59,8 +59,9 @@ HWY_INLINE void collectRuns(const PairFrame& frame, std::uint32_t cell, Runs& ru
   });
 }
 
-// Candidates of one particle, a vector at a time: pair(j, dx, dy, m) with dx, dy in lattice units and m = max(0, 1 − q²/4),
-// 0 in lanes that hold no visible neighbour. Inlined by force: a call for each vector would cost as much as the vector.
+// Candidates of one particle, a vector at a time: pair(j, dx, dy, m) with dx, dy in lattice units and m = max(0, 1 −
+// q²/4), 0 in lanes that hold no visible neighbour. Inlined by force: a call for each vector would cost as much as the
+// vector.
 template <typename Pair>
 HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uint32_t i, const Pair& pair) {
   const F f;
@@ -137,8 +138,7 @@ void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin,
     loop.density[i] = kNorm * sumOf(sum) + wall;
     const float scale = -2.0f * kNorm * kUnit;
     const float px = scale * sumOf(sx), py = scale * sumOf(sy);
-    loop.diagonal[i] =
-        (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) + scale * scale * sumOf(squares);
+    loop.diagonal[i] = (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) + scale * scale * sumOf(squares);
   });
 }
 

@@ -1,6 +1,5 @@
 #include <froude/solver/fluid/pbf.h>
 
-#include <cstdlib>
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
@@ -9,17 +8,18 @@
 namespace froude {
 namespace {
 
-// Defaults, chosen by docs/decisions/solver-pbf-sweeps.md.
-constexpr double kCourant = 0.25;        // of the support radius a sub-step
-constexpr int kSweeps = 5;
-#define EV(n,d) (std::getenv(n)?std::atof(std::getenv(n)):d)
-const float BETA=EV("BETA",0.05), DELTA=EV("DELTA",0.02);
-const double KMAX = EV("KMAX",0.3);
-const double kRelaxation = EV("OMEGA",0.6);      // of a Jacobi sweep
-constexpr float kSmallestDiagonal = 0.05f;  // a particle with no neighbours has none
+// Defaults and their measurements: docs/decisions/solver-pbf.md.
+constexpr double kCourant = 0.25;    // of the support radius a sub-step
+constexpr double kStiffness = 0.15;  // largest κ = p·dt²/dx²: beyond, the arrangement of the particles rings
+constexpr int kMinSweeps = 2, kMaxSweeps = 30;
+constexpr int kFreshSweeps = 300;           // where no pressure is known yet
+constexpr double kTolerance = 2e-4;         // mean density gained in a sub-step
+constexpr double kRelaxation = 0.6;         // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
+constexpr float kStabilization = 0.3f;      // share of the density error that is shifted away a sub-step
+constexpr float kLoose = 0.02f;             // below 1 − this a particle is free to be compressed
+constexpr float kSmallestDiagonal = 0.05f;  // a particle without neighbours has none
+constexpr float kSmoothing = 0.05f;  // XSPH (the paper's eq. 17), times √κ: a viscosity of 0.05·dx·√p, on any step
 constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
-constexpr float kSmoothing = 0.01f;      // XSPH, the paper's c (eq. 17)
-constexpr float kForgetSteps = 20.0f;    // sub-steps over which an over-dense start is let go
 constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
 
 }  // namespace
@@ -28,11 +28,9 @@ Pbf::Pbf(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : def_(def),
       domain_(domain),
       dx_(def.spacing),
-      sweeps_(def.sweeps > 0 ? def.sweeps : kSweeps),
       courant_(def.courant > 0.0 ? def.courant : kCourant),
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
-      allowance_(pool.addColumn<float>("allowance", ColumnKind::State)),
       walls_(def.spacing, {def.group, def.collidesWith}) {}
 
 double Pbf::supportRadius() const { return kernel::kSupport * dx_; }
@@ -44,8 +42,13 @@ StepBound Pbf::stepBound(const ParticlePool& pool, double maxSpeed, double gravi
   const double support = supportRadius();
   if (maxSpeed > 0.0) bound.tighten(courant_ * support / maxSpeed, StepLimit::Courant);
   if (gravity > 0.0) bound.tighten(0.25 * std::sqrt(support / gravity), StepLimit::Acceleration);
-  const double most = largestPressure(pool);
-  if (most > 0.0) bound.tighten(std::sqrt(KMAX / most) * dx_, StepLimit::Pressure);
+  double most = largestPressure(pool);
+  if (most == 0.0 && !pool.empty()) {  // nothing is known yet: at most what the whole fluid would weigh as one column
+    const auto [left, right] = std::minmax_element(pool.x().begin(), pool.x().end());
+    const auto [low, high] = std::minmax_element(pool.y().begin(), pool.y().end());
+    most = gravity * std::max(*right - *left, *high - *low);
+  }
+  if (most > 0.0) bound.tighten(std::sqrt(kStiffness / most) * dx_, StepLimit::Pressure);
   if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
   return bound;
 }
@@ -62,13 +65,13 @@ double Pbf::largestPressure(const ParticlePool& pool) const {
 void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
   if (pool.empty()) return;
   resizeScratch(pool.size());
-  predict(context, pool, impulses, stats);        // lines 1–4
-  sortByCell(context, pool);                      // lines 5–7
+  predict(context, pool, impulses, stats);  // lines 1–4
+  sortByCell(context, pool);                // lines 5–7
   meetWalls(context);
   warmStart(context, pool);
-  solveDensity(context, pool, stats);             // lines 8–19
+  solveDensity(context, pool, stats);               // lines 8–19
   finishPositions(context, pool, impulses, stats);  // lines 20–21, 23
-  smoothVelocities(context, pool);                // line 22
+  smoothVelocities(context, pool);                  // line 22
 }
 
 void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
@@ -95,9 +98,10 @@ void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger&
       predictedY_[i] = to.y();
     }
   });
-  stats.gravityImpulse += context.gravity.isConstant()
-                              ? Vec2(particleMass() * static_cast<double>(pool.size()) * dt * context.gravity.constant())
-                              : Vec2(0.0, 0.0);
+  stats.gravityImpulse +=
+      context.gravity.isConstant()
+          ? Vec2(particleMass() * static_cast<double>(pool.size()) * dt * context.gravity.constant())
+          : Vec2(0.0, 0.0);
   contacts_.book(particleMass(), impulses);
 }
 
@@ -139,8 +143,13 @@ PairFrame Pbf::frame() const {
 void Pbf::runDensity(const StepContext& context, float* density, float* diagonal) {
   const PairFrame pairs = frame();
   const bool any = walls_.any();
-  const DensityLoop loop{any ? walls_.lambda() : nullptr, walls_.gradientX(), walls_.gradientY(),
-                         shiftX_.data(), shiftY_.data(), density, diagonal};
+  const DensityLoop loop{any ? walls_.lambda() : nullptr,
+                         walls_.gradientX(),
+                         walls_.gradientY(),
+                         shiftX_.data(),
+                         shiftY_.data(),
+                         density,
+                         diagonal};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.density(pairs, loop, begin, end); });
@@ -148,8 +157,10 @@ void Pbf::runDensity(const StepContext& context, float* density, float* diagonal
 
 void Pbf::runDisplacement(const StepContext& context, const float* pressure) {
   const PairFrame pairs = frame();
-  const DisplacementLoop loop{pressure, walls_.any() ? walls_.gradientX() : nullptr, walls_.gradientY(),
-                              walls_.tangent(), shiftX_.data(), shiftY_.data(), nextX_.data(), nextY_.data()};
+  const DisplacementLoop loop{pressure,           walls_.any() ? walls_.gradientX() : nullptr,
+                              walls_.gradientY(), walls_.tangent(),
+                              shiftX_.data(),     shiftY_.data(),
+                              nextX_.data(),      nextY_.data()};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
@@ -167,45 +178,119 @@ void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
 }
 
 void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  const auto density = pool.column(density_), allowance = pool.column(allowance_), pressure = pool.column(pressure_);
-  const std::size_t n = pool.size();
-  const float beta = std::min(1.0, BETA * std::sqrt(pressureUnit(context.dt) * std::max(largestPressure(pool), 0.1 * dx_ * 9.81)));
-  for (int sweep = 0;; ++sweep) {
-    const bool first = sweep == 0;
-    if (first) {  // a density of 0 marks a particle that is new
-      parallelFor(n, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          allowance[i] = density[i] == 0.0f ? -2.0f : (1.0f - beta) * std::max(density[i] - 1.0f, -DELTA);
-        }
-      });
-    }
-    runDensity(context, density.data(), first ? diagonal_.data() : nullptr);
-    if (sweep == sweeps_) break;
-    parallelFor(n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (allowance[i] == -2.0f) allowance[i] = std::max(0.0f, density[i] - 1.0f);
-        const float excess = density[i] - 1.0f - allowance[i];
-        const float next = std::max(0.0f, kappa_[i] + static_cast<float>(kRelaxation) * excess /
-                                                          std::max(diagonal_[i], kSmallestDiagonal));
-        change_[i] = next - kappa_[i];
-        kappa_[i] = next;
-      }
-    });
+  const auto density = pool.column(density_);
+  const bool fresh = largestPressure(pool) == 0.0;  // nothing was there to warm-start from
+  chooseTargets(pool);
+  runDensity(context, density.data(), diagonal_.data());
+  keepFirstDensities(pool);
+  int sweep = 0;
+  if (fresh) {
+    liftFromCoarse(context, pool);
     runDisplacement(context, change_.data());
+    runDensity(context, density.data(), nullptr);
   }
-  stats.sweeps = sweeps_;
-  const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
-  stats.meanCompression = parallelSum(n, [&](std::size_t begin, std::size_t end) {
+  while (!solved(pool, sweep, fresh)) {
+    relaxPressures(pool);
+    runDisplacement(context, change_.data());
+    runDensity(context, density.data(), nullptr);
+    ++sweep;
+  }
+  stats.sweeps = sweep + 1;
+  stabilize(context, pool);
+  judgeDensity(context, pool, stats);
+}
+
+// The velocity is to keep each density as it was, so that pressures answer to the rate of compression only: answering
+// to its sum as well, kept pressures wind up and a deep fluid bounces. What has room may be compressed up to its rest
+// density.
+void Pbf::chooseTargets(const ParticlePool& pool) {
+  const auto density = pool.column(density_);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      target_[i] = density[i] == 0.0f ? 0.0f : std::max(density[i], 1.0f - kLoose);
+  });
+}
+
+// A density of 0 marked a particle that is new: what it finds is what it may keep. An over-dense start is thus no push.
+void Pbf::keepFirstDensities(const ParticlePool& pool) {
+  const auto density = pool.column(density_);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) target_[i] = target_[i] == 0.0f ? std::max(density[i], 1.0f) : target_[i];
+  });
+}
+
+void Pbf::liftFromCoarse(const StepContext& context, const ParticlePool& pool) {
+  const auto density = pool.column(density_);
+  const std::size_t n = pool.size();
+  coarse_.build(context.obstacles, filter(), grid_, occupied_, density.data());
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) change_[i] = density[i] - target_[i];
+  });
+  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, change_.data(), correction_.data());
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) kappa_[i] = change_[i] = std::max(0.0f, correction_[i]);
+  });
+}
+
+bool Pbf::solved(const ParticlePool& pool, int sweep, bool fresh) const {
+  if (def_.sweeps > 0) return sweep == def_.sweeps;
+  if (sweep < kMinSweeps) return false;
+  if (sweep >= (fresh ? kFreshSweeps : kMaxSweeps)) return true;
+  const auto density = pool.column(density_);
+  const double excess = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
     double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) sum += std::max(0.0f, density[i] - target_[i]);
+    return sum;
+  });
+  return excess < (fresh ? 0.1 : 1.0) * kTolerance * static_cast<double>(pool.size());
+}
+
+// One Jacobi sweep, projected on κ ≥ 0: the paper's λ (eq. 11) as a correction of what is there already.
+void Pbf::relaxPressures(const ParticlePool& pool) {
+  const auto density = pool.column(density_);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float step =
+          static_cast<float>(kRelaxation) * (density[i] - target_[i]) / std::max(diagonal_[i], kSmallestDiagonal);
+      const float next = std::max(0.0f, kappa_[i] + step);
+      change_[i] = next - kappa_[i];
+      kappa_[i] = next;
+    }
+  });
+}
+
+// Density that is left above rest is shifted away without becoming velocity, as pre-stabilisation in Macklin et al.,
+// "Unified particle physics", ACM Trans. Graph. 33 (2014), section 4.4: first order in time, it cannot oscillate.
+void Pbf::stabilize(const StepContext& context, ParticlePool& pool) {
+  const auto density = pool.column(density_);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      change_[i] = kStabilization * std::max(0.0f, density[i] - 1.0f) / std::max(diagonal_[i], kSmallestDiagonal);
+      solvedX_[i] = shiftX_[i];
+      solvedY_[i] = shiftY_[i];
+    }
+  });
+  runDisplacement(context, change_.data());
+  runDensity(context, density.data(), nullptr);
+}
+
+void Pbf::judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
+  const auto density = pool.column(density_), pressure = pool.column(pressure_);
+  const std::size_t n = pool.size();
+  const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
+  const double sum = parallelSum(n, [&](std::size_t begin, std::size_t end) {
+    double total = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       pressure[i] = unit * kappa_[i];
-      sum += std::max(0.0f, density[i] - 1.0f);
+      total += std::max(0.0f, density[i] - 1.0f);
     }
-    return sum;
-  }) / static_cast<double>(n);
+    return total;
+  });
+  stats.meanCompression = sum / static_cast<double>(n);
   stats.maxCompression = parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
     float most = 0.0f;
-    for (std::size_t i = begin; i < end; ++i) most = std::isnan(density[i]) ? density[i] : std::max(most, density[i] - 1.0f);
+    for (std::size_t i = begin; i < end; ++i)
+      most = std::isnan(density[i]) ? density[i] : std::max(most, density[i] - 1.0f);
     return static_cast<double>(most);
   });
 }
@@ -220,7 +305,8 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec2 at(x[i], y[i]);
-      Vec2 to(predictedX_[i] + dx_ * static_cast<double>(shiftX_[i]), predictedY_[i] + dx_ * static_cast<double>(shiftY_[i]));
+      Vec2 to(predictedX_[i] + dx_ * static_cast<double>(shiftX_[i]),
+              predictedY_[i] + dx_ * static_cast<double>(shiftY_[i]));
       const double travel = (to - at).norm();
       if (context.obstacles.clearance(at) <= travel && context.obstacles.freeDistance(at, point.filter) <= travel) {
         PathResult path;
@@ -236,8 +322,9 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
           pool.kill(static_cast<std::uint32_t>(i));
         }
       }
-      vx[i] = (to.x() - at.x()) / dt;
-      vy[i] = (to.y() - at.y()) / dt;
+      // The shift of the stabilisation is no velocity.
+      vx[i] = (to.x() - at.x() - dx_ * static_cast<double>(shiftX_[i] - solvedX_[i])) / dt;
+      vy[i] = (to.y() - at.y() - dx_ * static_cast<double>(shiftY_[i] - solvedY_[i])) / dt;
       x[i] = to.x();
       y[i] = to.y();
     }
@@ -247,7 +334,8 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   for (const std::uint32_t n : crushed_) stats.crushed += n;
   for (const std::uint32_t n : leaks_) stats.leaks += n;
   contacts_.book(particleMass(), impulses);
-  // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did there.
+  // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did
+  // there.
   const double unit = particleMass() * dx_ / dt;
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
@@ -255,7 +343,7 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
     Vec2 impulse = 2.0 * unit * static_cast<double>(kappa_[i]) * gradient;
     if (walls_.tangent()[i] > 0.0f) {
       const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
-      impulse -= unit * static_cast<double>(link.lambda) * along.dot(Vec2(shiftX_[i], shiftY_[i])) * along;
+      impulse -= unit * static_cast<double>(link.lambda) * along.dot(Vec2(solvedX_[i], solvedY_[i])) * along;
     }
     const Vec2 at(x[i], y[i]);
     impulses.add(link.owner, at, impulse, context.obstacles.velocityAt(link.owner, at));
@@ -290,8 +378,12 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
     }
   });
   const PairFrame pairs = frame();
-  const ViscosityLoop loop{velocityX_.data(), velocityY_.data(), kSmoothing,
-                           static_cast<float>(2.0 * def_.viscosity * context.dt / (dx_ * dx_)), smoothX_.data(),
+  const double stiffness = pressureUnit(context.dt) * largestPressure(pool);
+  const ViscosityLoop loop{velocityX_.data(),
+                           velocityY_.data(),
+                           kSmoothing * static_cast<float>(std::sqrt(stiffness)),
+                           static_cast<float>(2.0 * def_.viscosity * context.dt / (dx_ * dx_)),
+                           smoothX_.data(),
                            smoothY_.data()};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
@@ -322,15 +414,15 @@ void Pbf::wrapPeriodic(ParticlePool& pool) {
 void Pbf::resizeScratch(std::size_t n) {
   for (AlignedArray<double>* a : {&predictedX_, &predictedY_}) a->resize(n);
   for (AlignedArray<std::int32_t>* a : {&latticeX_, &latticeY_, &nextX_, &nextY_}) a->resize(n);
-  for (AlignedArray<float>* a : {&shiftX_, &shiftY_, &kappa_, &change_, &diagonal_, &velocityX_, &velocityY_, &smoothX_,
-                                 &smoothY_}) {
+  for (AlignedArray<float>* a : {&shiftX_, &shiftY_, &solvedX_, &solvedY_, &kappa_, &change_, &correction_, &target_,
+                                 &diagonal_, &velocityX_, &velocityY_, &smoothX_, &smoothY_}) {
     a->resize(n);
   }
 }
 
 std::size_t Pbf::memoryBytes() const {
-  return 2 * predictedX_.capacity() * sizeof(double) + 13 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
-         walls_.memoryBytes();
+  return 2 * predictedX_.capacity() * sizeof(double) + 17 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
+         walls_.memoryBytes() + coarse_.memoryBytes();
 }
 
 }  // namespace froude

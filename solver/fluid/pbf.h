@@ -1,13 +1,14 @@
 // Position based fluids: an incompressible fluid by density constraints at the positions, with pressures that are kept.
 //
-// Macklin & Müller, "Position based fluids", ACM Trans. Graph. 32 (2013), in the form of an implicit pressure solve: the
-// accumulated multiplier of a constraint is the pressure p, its displacement dt²·a(p). Keeping p from step to step (warm
-// start) makes the sweeps of all past steps count, which is what a deep fluid needs from a local method.
+// Macklin & Müller, "Position based fluids", ACM Trans. Graph. 32 (2013), in the form of an implicit pressure solve:
+// the accumulated multiplier of a constraint is the pressure p, its displacement dt²·a(p). Keeping p from step to step
+// (warm start) makes the sweeps of all past steps count, which is what a deep fluid needs from a local method.
 #pragma once
 
 #include <froude/base/aligned.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/contact_log.h>
+#include <froude/solver/fluid/coarse_pressure.h>
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/pair_loops.h>
 #include <froude/solver/fluid/wall_layer.h>
@@ -31,6 +32,13 @@ class Pbf final : public FluidModel {
   void meetWalls(const StepContext& context);
   void warmStart(const StepContext& context, ParticlePool& pool);
   void solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
+  void chooseTargets(const ParticlePool& pool);
+  void keepFirstDensities(const ParticlePool& pool);
+  void liftFromCoarse(const StepContext& context, const ParticlePool& pool);
+  bool solved(const ParticlePool& pool, int sweep, bool fresh) const;
+  void relaxPressures(const ParticlePool& pool);
+  void stabilize(const StepContext& context, ParticlePool& pool);
+  void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void smoothVelocities(const StepContext& context, ParticlePool& pool);
 
@@ -42,24 +50,24 @@ class Pbf final : public FluidModel {
   void runDisplacement(const StepContext& context, const float* pressure);
   void resizeScratch(std::size_t n);
   double largestPressure(const ParticlePool& pool) const;  // p/ρ [m²/s²]
-  double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
+  double pressureUnit(double dt) const;                    // κ of one m²/s²: dt²/dx²
 
   FluidDef def_;
   DomainDef domain_;
   double dx_;
-  int sweeps_;
   double courant_;
-  ColumnId<float> pressure_, density_, allowance_;
+  ColumnId<float> pressure_, density_;
   CellGrid grid_;
   WallLayer walls_;
+  CoarsePressure coarse_;
   std::vector<std::uint32_t> occupied_;
   // Scratch of a sub-step, by index; lengths in spacings where not said otherwise.
-  AlignedArray<double> predictedX_, predictedY_;     // [m]
+  AlignedArray<double> predictedX_, predictedY_;  // [m]
   AlignedArray<std::int32_t> latticeX_, latticeY_, nextX_, nextY_;
-  AlignedArray<float> shiftX_, shiftY_, kappa_, change_, diagonal_;
+  AlignedArray<float> shiftX_, shiftY_, solvedX_, solvedY_, kappa_, change_, correction_, target_, diagonal_;
   AlignedArray<float> velocityX_, velocityY_, smoothX_, smoothY_;  // [m/s]
   ContactLog contacts_;
-  std::vector<std::uint32_t> crushed_, leaks_;       // counts, one a block
+  std::vector<std::uint32_t> crushed_, leaks_;  // counts, one a block
 };
 
 }  // namespace froude

@@ -11,8 +11,9 @@ namespace {
 constexpr double kReach = kernel::kSupport;
 constexpr double kShare4 = 0.8, kShare10 = 0.2;  // of m⁴ and m¹⁰ in the kernel, each normalised
 
-// B_k = ∫ m^k ds and A_k = ∫ m^k dθ (dθ = d·ds/r²) along the line of an edge at distance d from the origin; s is measured
-// from the foot of the perpendicular, r² = d² + s², m = 1 − r²/4 = M − s²/4. By parts and by splitting off one factor m:
+// B_k = ∫ m^k ds and A_k = ∫ m^k dθ (dθ = d·ds/r²) along the line of an edge at distance d from the origin; s is
+// measured from the foot of the perpendicular, r² = d² + s², m = 1 − r²/4 = M − s²/4. By parts and by splitting off one
+// factor m:
 //     B_k = (s·m^k + 2kM·B_{k−1})/(2k + 1),   A_k = A_{k−1} − (d/4)·B_{k−1}.
 struct LineIntegrals {
   double kernel;  // ∫ w ds
@@ -94,7 +95,8 @@ bool anglesOverlap(const Front& e, const Front& f) {
   constexpr double kTouch = 1e-12;
   auto strictlyInside = [](const Front& range, const Vec2& p) {
     const double scale = p.norm();
-    return cross(range.p1, p) > kTouch * scale * range.p1.norm() && cross(p, range.p2) > kTouch * scale * range.p2.norm();
+    return cross(range.p1, p) > kTouch * scale * range.p1.norm() &&
+           cross(p, range.p2) > kTouch * scale * range.p2.norm();
   };
   if (strictlyInside(e, f.p1) || strictlyInside(e, f.p2) || strictlyInside(f, e.p1) || strictlyInside(f, e.p2)) {
     return true;
@@ -176,7 +178,8 @@ std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare>
   }
   if (hidden) return integrateHidden({fronts.data(), n}, shares);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i) addShare(shares, count, fronts[i].owner, integrateWedge(fronts[i].p1, fronts[i].p2));
+  for (std::size_t i = 0; i < n; ++i)
+    addShare(shares, count, fronts[i].owner, integrateWedge(fronts[i].p1, fronts[i].p2));
   return count;
 }
 

@@ -1,11 +1,12 @@
 // The share of a particle's kernel that walls fill, exact for polygons: no boundary particles, no sampled map.
 //
-// From a point x outside all solids, every direction θ first meets a wall at some radius r₁(θ) or none. What lies behind is
-// solid or hidden by it, so that the two sides of a thin plate do not feel each other. Then
+// From a point x outside all solids, every direction θ first meets a wall at some radius r₁(θ) or none. What lies
+// behind is solid or hidden by it, so that the two sides of a thin plate do not feel each other. Then
 //     λ(x)  = ∫_behind W  = Σ_edges ∫ (1/2π − G(r)) dθ,   G(r) = ∫₀^r W s ds
 //     g(x)  = ∫_behind ∇ₓW = −∮_∂behind W n ds            (walls seen, and the shadow lines behind their ends)
 // Each visible piece of an edge gives one wedge with a closed form (polynomials and one arc tangent an end).
-// Semi-analytical walls: Ferrand et al., Int. J. Numer. Methods Fluids 71 (2013); volume maps: Bender et al., SIGGRAPH MIG 2019.
+// Semi-analytical walls: Ferrand et al., Int. J. Numer. Methods Fluids 71 (2013); volume maps: Bender et al., SIGGRAPH
+// MIG 2019.
 #pragma once
 
 #include <span>
@@ -31,9 +32,9 @@ struct WallShare {
 /// reports (it raises no error: the nearest ones are kept).
 inline constexpr std::size_t kMaxWallEdges = 64;
 
-/// Integrates the walls seen from the origin. `edges` are all edges within the support radius, front- or back-facing, at
-/// most kMaxWallEdges. Writes one share per owner, in order of first appearance, to `shares` (room for edges.size()) and
-/// returns their number. Cost: O(k) for k front-facing edges that do not hide one another, O(k²) otherwise.
+/// Integrates the walls seen from the origin. `edges` are all edges within the support radius, front- or back-facing,
+/// at most kMaxWallEdges. Writes one share per owner, in order of first appearance, to `shares` (room for edges.size())
+/// and returns their number. Cost: O(k) for k front-facing edges that do not hide one another, O(k²) otherwise.
 /// Accuracy: closed forms in double, 1e-13 of λ.
 std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares);
 

@@ -1,7 +1,6 @@
 #include <froude/solver/fluid/wall_layer.h>
 
 #include <array>
-#include <cstdlib>
 
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/kernel.h>
@@ -10,10 +9,11 @@ namespace froude {
 
 namespace {
 
-// A row of particles half a spacing from a flat wall sees λ plus the lattice sum of a half space, which is 1 only if the
-// wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start over-dense.
-const double kRecession = (std::getenv("WREC")?std::atof(std::getenv("WREC")):0.0856);
-constexpr float kMostFilled = 0.6f;   // a particle with more wall around it has no one wall to go along
+// A row of particles half a spacing from a flat wall sees λ plus the lattice sum of a half space, which is 1 only if
+// the wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start
+// over-dense.
+constexpr double kRecession = 0.0856018;
+constexpr float kMostFilled = 0.6f;    // a particle with more wall around it has no one wall to go along
 constexpr double kLongestMiter = 4.0;  // of the recession, at needles
 
 Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized(); }
@@ -142,8 +142,10 @@ void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid
 }
 
 std::size_t WallLayer::memoryBytes() const {
-  std::size_t bytes = (lambda_.capacity() + gradientX_.capacity() + gradientY_.capacity() + tangent_.capacity() + offset_.capacity()) * 4 +
-                      words_.capacity() * 8;
+  std::size_t bytes =
+      (lambda_.capacity() + gradientX_.capacity() + gradientY_.capacity() + tangent_.capacity() + offset_.capacity()) *
+          4 +
+      words_.capacity() * 8;
   for (const Block& b : blocks_) bytes += b.links.capacity() * sizeof(WallLink) + b.words.capacity() * 8;
   return bytes;
 }

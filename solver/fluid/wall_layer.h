@@ -15,7 +15,7 @@ namespace froude {
 /// The part of a particle's wall gradient that belongs to one owner.
 struct WallLink {
   std::uint32_t particle;
-  std::int32_t owner;        // body index, −1: the domain
+  std::int32_t owner;  // body index, −1: the domain
   float lambda;
   float gradientX, gradientY;  // [1/dx]
 };
@@ -26,8 +26,8 @@ class WallLayer {
   /// spacing dx [m] is the unit of λ's gradient; filter: of the fluid.
   WallLayer(double spacing, CollisionFilter filter) : spacing_(spacing), filter_(filter) {}
 
-  /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a look-up
-  /// a particle, and the wall integral for those within the support radius of a wall.
+  /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a
+  /// look-up a particle, and the wall integral for those within the support radius of a wall.
   void build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y);
 
   /// Per particle; 0 away from walls.
@@ -38,9 +38,7 @@ class WallLayer {
   const float* tangent() const { return tangent_.data(); }
   /// False if no particle is near a wall: loops then skip λ altogether.
   bool any() const { return any_; }
-  HiddenPairs hidden() const {
-    return anyHidden_ ? HiddenPairs{offset_.data(), words_.data()} : HiddenPairs{};
-  }
+  HiddenPairs hidden() const { return anyHidden_ ? HiddenPairs{offset_.data(), words_.data()} : HiddenPairs{}; }
   /// visit(const WallLink&) in increasing particle order.
   template <typename Visit>
   void forEachLink(Visit&& visit) const {

@@ -27,7 +27,8 @@ void scriptMeans(const std::vector<ScriptPiece>& script, double t, double dt, Bo
 BodySet::BodySet(std::vector<BodyDef> definitions) : definitions_(std::move(definitions)) {
   for (const BodyDef& def : definitions_) {
     if (def.shape == nullptr) throw Error("body '" + def.name + "' has no shape");
-    if (def.motion == Motion::Free) throw Error("body '" + def.name + "': free bodies are not in this version; use fixed or scripted");
+    if (def.motion == Motion::Free)
+      throw Error("body '" + def.name + "': free bodies are not in this version; use fixed or scripted");
     BodyMotion motion{def.position, def.angle, {0.0, 0.0}, 0.0};
     if (def.motion == Motion::Scripted && def.script.empty()) {
       motion.velocity = def.velocity;
@@ -73,7 +74,8 @@ double BodySet::maxSpin() const {
 
 void BodySet::archive(Archive& a) {
   const std::size_t n = a.count("count", motions_.size());
-  if (n != motions_.size()) throw Error("the saved state has " + std::to_string(n) + " bodies, this world " + std::to_string(motions_.size()));
+  if (n != motions_.size())
+    throw Error("the saved state has " + std::to_string(n) + " bodies, this world " + std::to_string(motions_.size()));
   constexpr std::size_t kFields = 6;
   flat_.resize(kFields * n);
   for (std::size_t i = 0; i < n; ++i) {

@@ -12,10 +12,10 @@ namespace froude {
 
 /// Pose and motion of a body over one sub-step.
 struct BodyMotion {
-  Vec2 position{0, 0};   // of the origin [m]
-  double angle = 0.0;    // [rad], not wrapped
-  Vec2 velocity{0, 0};   // of the origin [m/s], constant over the sub-step
-  double spin = 0.0;     // [rad/s], constant over the sub-step
+  Vec2 position{0, 0};  // of the origin [m]
+  double angle = 0.0;   // [rad], not wrapped
+  Vec2 velocity{0, 0};  // of the origin [m/s], constant over the sub-step
+  double spin = 0.0;    // [rad/s], constant over the sub-step
   Transform transform() const { return Transform::of(position, angle); }
 };
 
@@ -47,7 +47,7 @@ class BodySet {
   std::vector<BodyMotion> motions_;
   std::vector<double> radius_;  // largest distance of a vertex from the origin [m]
   bool anyMoves_ = false;
-  AlignedArray<double> flat_;   // work space of archive
+  AlignedArray<double> flat_;  // work space of archive
 };
 
 }  // namespace froude
