@@ -37,6 +37,8 @@ double squaredDistance(const GridEdge& edge, const Vec2& p) {
 FieldSample EdgeGrid::sample(const Vec2& p) const {
   if (!inGrid(p)) return freeOutside() ? bound(p, lowerBound(p)) : sampleExact(p);
   const std::size_t cell = cellOf(p);
+  // Most cells of a large domain are far: one look-up tells.
+  if (clearance_[cell] > farther_) return bound(p, clearance_[cell]);
   const std::span<const std::uint32_t> candidates = nearest(cell);
   if (candidates.empty()) return bound(p, clearance_[cell]);
   Nearest closest{*this, p};

@@ -126,6 +126,7 @@ class EdgeGrid {
   double cell_ = 0.0;
   double inverseCell_ = 0.0;
   double band_ = 0.0;
+  float farther_ = 0.0F;  // a clearance above it is that of a cell without edges
   double scale_ = 0.0;
   double rounding_ = 0.0;  // closer than this, signs are decided exactly
   bool sealed_ = true;

@@ -9,21 +9,24 @@
 namespace froude::detail {
 namespace {
 
-struct Range {
-  double least;
-  double most;
+using Corners = std::array<Vec2, 4>;
+using Squares = std::array<double, 4>;  // squared distances of something to the corners of a box
+
+Corners cornersOf(const Box& box) {
+  return {box.min, Vec2(box.max.x(), box.min.y()), box.max, Vec2(box.min.x(), box.max.y())};
+}
+
+struct Reach {
+  double least;     // distance of the box's nearest point to the edge
+  double most;      // of its farthest: the distance to a convex set is convex, so that is a corner
+  Squares squares;  // of the corners to the edge
 };
 
-/// Least and greatest distance of the points of `box` to the edge.
-Range distanceRange(const GridEdge& e, const Box& box) {
-  const std::array<Vec2, 4> corners{box.min, Vec2(box.max.x(), box.min.y()), box.max, Vec2(box.min.x(), box.max.y())};
-  double least = kInfinity;
-  double most = 0.0;
-  for (const Vec2& corner : corners) {
-    const double square = squaredDistance(e, corner);
-    least = std::min(least, square);
-    most = std::max(most, square);  // the distance to a convex set is convex: greatest at a corner
-  }
+Reach reachOf(const GridEdge& e, const Box& box) {
+  const Corners corners = cornersOf(box);
+  Reach reach{};
+  for (std::size_t k = 0; k < 4; ++k) reach.squares[k] = squaredDistance(e, corners[k]);
+  double least = *std::min_element(reach.squares.begin(), reach.squares.end());
   for (const Vec2& end : {e.a, e.b}) {
     const Vec2 out = (box.min - end).cwiseMax(end - box.max).cwiseMax(0.0);
     least = std::min(least, out.squaredNorm());
@@ -35,8 +38,54 @@ Range distanceRange(const GridEdge& e, const Box& box) {
       least = 0.0;
     }
   }
-  return {std::sqrt(least), std::sqrt(most)};
+  reach.least = std::sqrt(least);
+  reach.most = std::sqrt(*std::max_element(reach.squares.begin(), reach.squares.end()));
+  return reach;
 }
+
+Vec2 closestPoint(const GridEdge& e, const Vec2& p) {
+  return e.a + std::clamp(e.direction.dot(p - e.a), 0.0, e.length) * e.direction;
+}
+
+/// Tells which edges can be closest to some point of a box. For two points p and q, |x − p|² − |x − q|² is linear in x,
+/// so if at all corners an edge is farther than q, each of its points is, everywhere in the box. The points q tried are
+/// those of the outline that are closest to the corners and to the centre.
+class Rivals {
+ public:
+  Rivals(std::span<const GridEdge> edges, std::span<const std::uint32_t> candidates, std::span<const Reach> reaches,
+         const Box& box, double rounding)
+      : margin_(rounding) {
+    const Corners corners = cornersOf(box);
+    std::array<std::size_t, 5> winner{};
+    Squares best;
+    best.fill(kInfinity);
+    double center = kInfinity;
+    for (std::size_t k = 0; k < reaches.size(); ++k) {
+      for (std::size_t c = 0; c < 4; ++c) {
+        if (reaches[k].squares[c] < best[c]) best[c] = reaches[k].squares[c], winner[c] = k;
+      }
+      const double square = squaredDistance(edges[candidates[k]], box.center());
+      if (square < center) center = square, winner[4] = k;
+    }
+    for (std::size_t c = 0; c < 5; ++c) {
+      const Vec2 q = closestPoint(edges[candidates[winner[c]]], c < 4 ? corners[c] : box.center());
+      for (std::size_t k = 0; k < 4; ++k) squares_[c][k] = (corners[k] - q).squaredNorm();
+    }
+  }
+
+  bool beat(const Reach& reach) const {
+    return std::any_of(squares_.begin(), squares_.end(), [&](const Squares& q) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (reach.squares[k] <= q[k] * (1.0 + 1e-12) + margin_ * (std::sqrt(q[k]) + margin_)) return false;
+      }
+      return true;
+    });
+  }
+
+ private:
+  double margin_;
+  std::array<Squares, 5> squares_;
+};
 
 float towardsZero(double value) {
   const auto rounded = static_cast<float>(value);
@@ -80,8 +129,8 @@ class EdgeGridBuilder {
   /// The edges of one source that a square keeps: a range of candidates_.
   struct Group {
     std::size_t begin, end;
-    Range range;
-    bool inside;  // the whole square is, if range.least > 0
+    double least, most;  // distance of any point of the square to the outline
+    bool inside;         // the whole square is, if least > 0
   };
 
   /// A hair larger than the cells, so that a point that rounding puts into a neighbour still finds its edges.
@@ -121,29 +170,37 @@ class EdgeGridBuilder {
     while (begin < end) {
       const std::uint32_t source = g_.edges_[candidates_[begin]].source;
       std::size_t groupEnd = begin;
-      Range range{kInfinity, kInfinity};
-      ranges_.clear();
+      double least = kInfinity;
+      double most = kInfinity;
+      reaches_.clear();
       for (; groupEnd < end && g_.edges_[candidates_[groupEnd]].source == source; ++groupEnd) {
-        ranges_.push_back(distanceRange(g_.edges_[candidates_[groupEnd]], box));
-        range.least = std::min(range.least, ranges_.back().least);
-        range.most = std::min(range.most, ranges_.back().most);
+        reaches_.push_back(reachOf(g_.edges_[candidates_[groupEnd]], box));
+        least = std::min(least, reaches_.back().least);
+        most = std::min(most, reaches_.back().most);
       }
-      const bool inside = range.least > 0.0 && centerInside(box.center(), begin, groupEnd);
-      if (range.least > reach()) {
+      const bool inside = least > 0.0 && centerInside(box.center(), begin, groupEnd);
+      if (least > reach()) {
         if (inside) return false;
       } else {
         const std::size_t first = candidates_.size();
-        for (std::size_t k = begin; k < groupEnd; ++k) {
-          if (ranges_[k - begin].least <= range.most * (1.0 + 1e-12) + g_.rounding_)
-            candidates_.push_back(candidates_[k]);
-        }
-        groups_.push_back({first, candidates_.size(), range, inside});
-        upper = std::min(upper, range.most);
+        keepUnbeaten(box, begin, most);
+        groups_.push_back({first, candidates_.size(), least, most, inside});
+        upper = std::min(upper, most);
       }
       begin = groupEnd;
     }
     dropDominated(groupMark, upper);
     return true;
+  }
+
+  /// Appends those of the candidates from `begin` on, whose reaches_ are known, that can be closest in the box.
+  void keepUnbeaten(const Box& box, std::size_t begin, double most) {
+    const std::span<const std::uint32_t> group(candidates_.data() + begin, reaches_.size());
+    const Rivals rivals(g_.edges_, group, reaches_, box, g_.rounding_);
+    for (std::size_t k = 0; k < reaches_.size(); ++k) {
+      if (reaches_[k].least > most * (1.0 + 1e-12) + g_.rounding_ || rivals.beat(reaches_[k])) continue;
+      candidates_.push_back(candidates_[begin + k]);
+    }
   }
 
   /// A source that lies outside the box and farther than another's farthest point is nowhere the nearest.
@@ -153,7 +210,7 @@ class EdgeGridBuilder {
     std::size_t kept = groupMark;
     for (std::size_t g = groupMark; g < groups_.size(); ++g) {
       Group group = groups_[g];
-      if (!group.inside && group.range.least > upper * (1.0 + 1e-12) + g_.rounding_) continue;
+      if (!group.inside && group.least > upper * (1.0 + 1e-12) + g_.rounding_) continue;
       const std::size_t first = to;
       for (std::size_t k = group.begin; k < group.end; ++k) candidates_[to++] = candidates_[k];
       group.begin = first;
@@ -177,8 +234,8 @@ class EdgeGridBuilder {
     double outside = kInfinity;
     double depth = 0.0;
     for (std::size_t k = groupMark; k < groups_.size(); ++k) {
-      if (groups_[k].inside) depth = std::max(depth, groups_[k].range.least);
-      outside = std::min(outside, groups_[k].range.least);
+      if (groups_[k].inside) depth = std::max(depth, groups_[k].least);
+      outside = std::min(outside, groups_[k].least);
     }
     g_.clearance_[cell] = towardsZero(depth > 0.0 ? -depth : outside);
   }
@@ -245,7 +302,7 @@ class EdgeGridBuilder {
     const std::size_t mark = candidates_.size();
     const Box box = boxOf(s, g_.cell_ * g_.coarse_);
     for (std::size_t k = begin; k < end; ++k) {
-      if (distanceRange(g_.edges_[candidates_[k]], box).least <= reach()) candidates_.push_back(candidates_[k]);
+      if (reachOf(g_.edges_[candidates_[k]], box).least <= reach()) candidates_.push_back(candidates_[k]);
     }
     const std::size_t kept = candidates_.size();
     if (kept > mark) {
@@ -271,7 +328,7 @@ class EdgeGridBuilder {
   EdgeGrid& g_;
   std::vector<std::uint32_t> candidates_;  // a stack: each level of squares appends what it keeps
   std::vector<Group> groups_;
-  std::vector<Range> ranges_;
+  std::vector<Reach> reaches_;
   std::uint32_t lastList_ = 0;
 };
 
@@ -319,6 +376,7 @@ EdgeGrid::EdgeGrid(std::vector<GridEdge> edges, const GridPlan& plan) : edges_(s
 
 void EdgeGrid::layOut(const GridPlan& plan) {
   band_ = plan.band;
+  farther_ = static_cast<float>(band_ * (kBandMargin + 1e-3));
   sealed_ = plan.sealed;
   const Vec2 size = plan.box.size();
   cell_ = plan.cellSize;

@@ -143,7 +143,9 @@ class CurveSearch {
       const bool fine = slack <= 0.0625 * skin_ || (chords > kPatience && slack <= graze_) || step < 1e-15;
       time += contact.time * step;
       if (fine) return {contact, time, std::max(skin_, 2.0 * slack)};
-      step *= 0.125;
+      // The true contact is within about 2 · slack of where the chord stopped; finer than rounding is never needed.
+      const double finest = std::sqrt(0.5 * skin_ / curvature) * 0.999;
+      step = std::max(finest, std::min(0.125 * step, 8.0 * slack / path_.speed(path_.arm(time, time + step))));
     }
     return {ChordHit(), 1.0, 0.0};
   }

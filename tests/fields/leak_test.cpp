@@ -40,7 +40,7 @@ struct Encounter {
 
 /// A bullet of up to 1,000 m/s aimed at a polygon that moves and turns; starts anywhere round it, also inside its
 /// pockets.
-Encounter makeEncounter(RandomStream& random) {
+Encounter makeEncounter(const Target& target, RandomStream& random) {
   Encounter e;
   e.dt = std::pow(10.0, random.uniform(-4.0, -2.0));
   e.motion.start =
@@ -54,7 +54,8 @@ Encounter makeEncounter(RandomStream& random) {
   const Vec2 direction(std::cos(angle), std::sin(angle));
   const double hitTime = random.uniform(0.0, 1.0) * e.dt;
   const Transform pose = e.motion.at(hitTime);
-  const Vec2 aim = pose.toWorld({random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6)});
+  const test::OracleEdge& edge = target.edges[random.below(static_cast<std::uint32_t>(target.edges.size()))];
+  const Vec2 aim = pose.toWorld(edge.a + random.uniform(-0.1, 1.1) * (edge.b - edge.a));
   e.velocity = speed * direction;
   e.from = aim - hitTime * e.velocity;
   e.radius = random.below(2) == 0 ? 0.0 : 0.03 * std::pow(10.0, random.uniform(-3.0, 0.0));
@@ -94,7 +95,8 @@ TEST(Leaks, none_in_random_swept_encounters_with_thin_concave_and_spinning_polyg
   RandomStream random(32, 0);
   Tally tally;
   while (tally.encounters < wanted && !HasFailure()) {
-    meet(targets[random.below(64)], makeEncounter(random), &tally);
+    const Target& target = targets[random.below(64)];
+    meet(target, makeEncounter(target, random), &tally);
   }
   EXPECT_EQ(tally.leaks, 0);
   EXPECT_GT(tally.hit, wanted / 4) << "encounters that never touch prove nothing";
@@ -152,6 +154,7 @@ TEST(Leaks, none_among_many_fixed_polygons_and_the_walls_of_a_domain) {
       const Vec2 p = path.corners[i].position;
       Vec2 q = path.corners[i + 1].position;
       // Above the open top there is no wall any more.
+      if (p.y() > 2.0) break;
       if (q.y() > 2.0) q = p + (2.0 - p.y()) / (q.y() - p.y()) * (q - p);
       ASSERT_FALSE(test::crosses(edges, p, q)) << k;
     }

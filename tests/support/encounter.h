@@ -78,30 +78,41 @@ bool entersBetween(std::span<const OracleEdge> edges, const At& at, double t0, d
 }
 
 /// Counts entries of a resolved path into the moving polygon: exact orientation over all edges, on chords of at most
-/// `turn` radians in the polygon's own frame.
+/// `turn` radians in the polygon's own frame. Stretches that stay outside the polygon's circle about its origin are
+/// taken whole.
 inline int countLeaks(std::span<const OracleEdge> edges, const RigidMotion& motion, double dt, const ResolvedPath& path,
                       double turn = 0.01) {
+  double reach = 0.0;
+  for (const OracleEdge& e : edges) reach = std::max(reach, e.a.norm());
   int leaks = 0;
   for (std::size_t i = 0; i + 1 < path.corners.size(); ++i) {
     const PathPoint& a = path.corners[i];
     const PathPoint& b = path.corners[i + 1];
     const double length = b.time - a.time;
-    const auto at = [&](double t) {
+    const auto world = [&](double t) {
       const double f = length > 0.0 ? (t - a.time) / length : (t > a.time ? 1.0 : 0.0);
-      const Vec2 world = t >= b.time ? b.position : Vec2(a.position + f * (b.position - a.position));
-      return inFrame(motion, dt, world, world, t / dt);
+      return t >= b.time ? b.position : Vec2(a.position + f * (b.position - a.position));
     };
-    const int pieces = 1 + static_cast<int>(std::abs(motion.spin) * length / turn);
-    Vec2 from = inFrame(motion, dt, a.position, a.position, a.time / dt);
+    const auto at = [&](double t) {
+      const Vec2 w = world(t);
+      return inFrame(motion, dt, w, w, t / dt);
+    };
+    const double speed = length > 0.0 ? ((b.position - a.position) / length - motion.velocity).norm() : 0.0;
+    const double shortest = motion.spin == 0.0 ? length : turn / std::abs(motion.spin);
     double begin = a.time;
-    for (int k = 1; k <= pieces; ++k) {
-      const double end = k == pieces ? b.time : a.time + length * k / pieces;
+    Vec2 from = at(begin);
+    do {
+      // Outside the circle only the approach counts, whatever the turn.
+      const double away = from.norm() - 1.001 * reach;
+      const double step = away > 0.0 ? std::max(shortest, 0.99 * away / speed) : shortest;
+      const double end = std::min(b.time, begin + step);
       const Vec2 to = at(end);
-      leaks += entersBetween(edges, at, begin, end, from, to, 40);
+      const bool clear = away > 0.0 && speed * (end - begin) < away;
+      if (!clear && entersBetween(edges, at, begin, end, from, to, 40)) ++leaks;
       from = to;
       begin = end;
-    }
-    if (whereIs(edges, from) > 0) ++leaks;
+    } while (begin < b.time);
+    if (whereIs(edges, at(b.time)) > 0) ++leaks;
   }
   return leaks;
 }

@@ -44,15 +44,13 @@ inline std::optional<long double> firstTouch(std::span<const OracleEdge> edges, 
 
 /// The disc's centre in the frame of a moving polygon after the fraction t of the step, computed without the library.
 inline Vec2 inFrame(const RigidMotion& motion, double dt, const Vec2& from, const Vec2& to, double t) {
-  using L = long double;
-  const L angle = static_cast<L>(motion.spin) * dt * t;
-  const L c = motion.start.rotation.c * std::cos(angle) - motion.start.rotation.s * std::sin(angle);
-  const L s = motion.start.rotation.s * std::cos(angle) + motion.start.rotation.c * std::sin(angle);
-  const L x =
-      from.x() + t * (static_cast<L>(to.x()) - from.x()) - (motion.start.position.x() + motion.velocity.x() * dt * t);
-  const L y =
-      from.y() + t * (static_cast<L>(to.y()) - from.y()) - (motion.start.position.y() + motion.velocity.y() * dt * t);
-  return {static_cast<double>(c * x + s * y), static_cast<double>(-s * x + c * y)};
+  const double angle = motion.spin * (dt * t);
+  const Rotation& start = motion.start.rotation;
+  const double c = start.c * std::cos(angle) - start.s * std::sin(angle);
+  const double s = start.s * std::cos(angle) + start.c * std::sin(angle);
+  const double x = from.x() + t * (to.x() - from.x()) - (motion.start.position.x() + motion.velocity.x() * (dt * t));
+  const double y = from.y() + t * (to.y() - from.y()) - (motion.start.position.y() + motion.velocity.y() * (dt * t));
+  return {c * x + s * y, c * y - s * x};
 }
 
 /// First sampled time, refined by bisection, at which the disc overlaps the moving polygon. May miss short contacts.
