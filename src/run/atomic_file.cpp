@@ -78,7 +78,7 @@ std::string readWholeFile(const std::string& path) {
   const auto fail = [&] { throw InputError(path + ": cannot be read: " + std::strerror(errno)); };
   if (descriptor < 0) fail();
   std::string contents;
-  struct stat status {};
+  struct stat status = {};
   if (fstat(descriptor, &status) == 0 && status.st_size > 0) contents.reserve(static_cast<std::size_t>(status.st_size));
   char buffer[1 << 16];
   while (true) {

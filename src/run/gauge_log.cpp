@@ -21,7 +21,7 @@ GaugeLog::GaugeLog(std::string file, const std::string& header) : file_(std::mov
 GaugeLog::GaugeLog(std::string file, std::uint64_t keepBytes) : file_(std::move(file)), bytes_(keepBytes) {
   descriptor_ = open(file_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) throwOutputError(file_);
-  struct stat status {};
+  struct stat status = {};
   if (fstat(descriptor_, &status) == 0 && static_cast<std::uint64_t>(status.st_size) < keepBytes) {
     throw InputError(file_ + ": rows from before the checkpoint are missing; the run cannot go on with it");
   }

@@ -176,7 +176,7 @@ bool isDone(const RunFolder& folder) {
 
 std::unique_ptr<Checkpoint> findCheckpoint(const RunFolder& folder) {
   const std::string file = folder.file("checkpoint.h5");
-  struct stat status {};
+  struct stat status = {};
   if (stat(file.c_str(), &status) != 0) {
     throw UsageError(
         fmt::format("{0}: it has no checkpoint.h5, so there is nothing to go on from; start again with "
@@ -192,7 +192,8 @@ void loadState(Checkpoint& checkpoint, World& world, GaugeSet& gauges, const Run
   } catch (const InputError&) {
     throw;
   } catch (const Error& e) {
-    throw InputError(fmt::format("{} (has {} been changed?)", e.what(), folder.file("scene.toml")));
+    throw InputError(fmt::format("{}: has {} been changed? The checkpoint was written by Froude {}", e.what(),
+                                 folder.file("scene.toml"), checkpoint.version()));
   }
 }
 

@@ -4,17 +4,18 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 
 namespace froude::run {
 namespace {
 
-volatile sig_atomic_t caughtSignal = 0;
+std::atomic<int> caughtSignal{0};  // the handler may run in any thread
+static_assert(std::atomic<int>::is_always_lock_free);
 std::array<struct sigaction, 4> previousActions;
 constexpr std::array<int, 4> kSignals{SIGINT, SIGTERM, SIGPIPE, SIGXFSZ};
 
 extern "C" void onSignal(int signal) {
-  if (caughtSignal != 0) _exit(128 + signal);
-  caughtSignal = signal;
+  if (caughtSignal.exchange(signal) != 0) _exit(128 + signal);
 }
 
 }  // namespace
