@@ -1,6 +1,7 @@
 // A scene in the making: what the readers of its sections hand to each other. Internal to this folder.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,7 +28,9 @@ struct Draft {
   std::vector<std::string> bodyPaths;  // "body.gate"
   std::vector<Place> emitterPlaces;
   Place timeStepPlace;
-  std::optional<Place> spacingPlace;                  // empty: the default
+  std::optional<Place> spacingPlace;  // empty: the default
+  /// Shapes by the bits of their vertices: a resolved scene writes each copy out, and equal shapes are to be one again.
+  std::map<std::string, std::shared_ptr<const Polygon>> shapes;
   bool fluidEmitted = false, bulletsEmitted = false;  // by some emitter
 
   void warn(const Place& place, const std::string& key, const std::string& text) {
@@ -38,6 +41,8 @@ struct Draft {
 /// A shape under the key `key` of `parent`: polygon with holes, box or regular. Written down as a polygon. Repairs
 /// become notes.
 std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft);
+/// The polygon, or an equal one that was there before.
+std::shared_ptr<const Polygon> sharedShape(Polygon polygon, Draft& draft);
 /// The node that reads back as this polygon.
 Node shapeNode(const Polygon& polygon);
 
@@ -59,9 +64,5 @@ void checkMemory(const Draft& draft);
 void seed(Draft& draft);
 /// Looks for what runs but is probably not meant.
 void judge(Draft& draft);
-
-/// Particles that the blocks will have at most, by area.
-double expectedFluid(const Draft& draft);
-double expectedBullets(const Draft& draft);
 
 }  // namespace froude::scene

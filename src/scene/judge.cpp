@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "scene/draft.h"
 #include "scene/estimate.h"
@@ -41,11 +42,10 @@ void judgeCuts(Draft& draft) {
 }
 
 void judgeConveyors(Draft& draft) {
-  const Polygon* last = nullptr;
+  std::set<const Polygon*> said;  // copies share a shape and are said once
   for (std::size_t i = 0; i < draft.scene.world.bodies.size(); ++i) {
     const BodyDef& body = draft.scene.world.bodies[i];
-    if (body.surfaceVelocity == 0.0 || body.shape.get() == last) continue;
-    last = body.shape.get();
+    if (body.surfaceVelocity == 0.0 || !said.insert(body.shape.get()).second) continue;
     draft.warn(draft.bodyPlaces[i], draft.bodyPaths[i] + ".surface_velocity",
                "moves bullets only: walls are free-slip for fluids in this version");
   }
@@ -70,11 +70,10 @@ double chordFrom(const Polygon& shape, std::uint32_t i) {
 void judgeThickness(Draft& draft) {
   const WorldDef& world = draft.scene.world;
   const double dx = world.fluid->spacing;
-  const Polygon* last = nullptr;  // copies share a shape and are said once
+  std::set<const Polygon*> seen;  // copies share a shape and are said once
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const Polygon& shape = *world.bodies[b].shape;
-    if (&shape == last || shape.edgeCount() > 2000) continue;
-    last = &shape;
+    if (shape.edgeCount() > 2000 || !seen.insert(&shape).second) continue;
     double thickness = kInfinity;
     for (std::uint32_t i = 0; i < shape.edgeCount(); ++i) thickness = std::min(thickness, chordFrom(shape, i));
     if (thickness >= dx * (1.0 - 1e-9)) continue;

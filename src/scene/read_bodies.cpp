@@ -11,7 +11,7 @@ namespace froude::scene {
 namespace {
 
 constexpr double kDegrees = kPi / 180.0;
-constexpr std::int64_t kMostCopies = 1000000;
+constexpr std::int64_t kMostCopies = 100000;
 
 /// [A-Za-z_][A-Za-z0-9_-]*, and dots, which copies have.
 bool goodName(const std::string& name) {
@@ -155,7 +155,7 @@ void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::
   const Vec2 position = body.vector("position", Vec2(0.0, 0.0));
   const double degrees = body.number("angle", Range::any(), 0.0);
   if (body.word("origin", {"own", "centroid"}, "own") == "centroid") {
-    def.shape = std::make_shared<const Polygon>(def.shape->transformed({-def.shape->centroid(), {}}));
+    def.shape = sharedShape(def.shape->transformed({-def.shape->centroid(), {}}), draft);
     body.resolved().set("shape", shapeNode(*def.shape));
     body.resolved().set("origin", Node::of("own"));
   }

@@ -11,6 +11,9 @@
 
 namespace froude::scene {
 
+namespace {
+
+/// Particles that the blocks will have at most, by area.
 double expectedFluid(const Draft& draft) {
   double count = 0.0;
   if (draft.scene.world.fluid)
@@ -24,6 +27,8 @@ double expectedBullets(const Draft& draft) {
   for (const BlockDraft& block : draft.bulletBlocks) count += static_cast<double>(block.count);
   return count;
 }
+
+}  // namespace
 
 void checkMemory(const Draft& draft) {
   constexpr double kMost = 1e15;  // beyond, counts need not be exact

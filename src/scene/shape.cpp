@@ -76,6 +76,14 @@ Node shapeNode(const Polygon& polygon) {
   return shape;
 }
 
+std::shared_ptr<const Polygon> sharedShape(Polygon polygon, Draft& draft) {
+  std::string bits(reinterpret_cast<const char*>(polygon.vertices().data()), polygon.vertices().size_bytes());
+  bits.append(reinterpret_cast<const char*>(polygon.ringStarts().data()), polygon.ringStarts().size_bytes());
+  std::shared_ptr<const Polygon>& shared = draft.shapes[bits];
+  if (shared == nullptr) shared = std::make_shared<const Polygon>(std::move(polygon));
+  return shared;
+}
+
 std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft) {
   static const std::vector<std::string> kKinds{"polygon", "box", "regular", "svg"};
   parent.need(key, "for example { box = [0, 0, 1, 1] }");
@@ -87,13 +95,13 @@ std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string&
   std::shared_ptr<const Polygon> polygon;
   try {
     if (kind == "polygon") {
-      polygon = std::make_shared<const Polygon>(readPolygon(shape, notes));
+      polygon = sharedShape(readPolygon(shape, notes), draft);
     } else if (kind == "box") {
-      polygon = std::make_shared<const Polygon>(Polygon::box(shape.box("box")));
+      polygon = sharedShape(Polygon::box(shape.box("box")), draft);
     } else {
       TableReader regular = *shape.table("regular", {"sides", "radius"});
       const auto sides = static_cast<int>(regular.integer("sides", 3, 100000));
-      polygon = std::make_shared<const Polygon>(Polygon::regular(sides, regular.number("radius", Range::positive())));
+      polygon = sharedShape(Polygon::regular(sides, regular.number("radius", Range::positive())), draft);
     }
   } catch (const PolygonError& error) {
     shape.fail(kind, std::string(error.what()));

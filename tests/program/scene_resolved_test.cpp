@@ -237,6 +237,12 @@ TEST(SceneResolved, its_world_has_the_same_state_after_some_steps) {
   EXPECT_NE(a.stateHash(), start);
 }
 
+TEST(SceneResolved, copies_share_one_shape_again) {
+  const scene::Scene again = loadText(loadText(kEverything).resolved);
+  EXPECT_EQ(again.world.bodies.at(0).shape, again.world.bodies.at(14).shape);
+  EXPECT_NE(again.world.bodies.at(0).shape, again.world.bodies.at(15).shape);
+}
+
 TEST(SceneResolved, scenes_of_the_house_survive_it) {
   for (const char* name : {"dam_break", "still_tank", "sieve"}) {
     SCOPED_TRACE(name);
