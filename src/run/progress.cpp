@@ -39,7 +39,7 @@ std::string label(const std::string& word) {
 std::string durationInWords(double seconds) {
   if (!(seconds < 1e9)) return "unknown";
   if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
-  const auto whole = static_cast<long>(seconds + 0.5);
+  const long whole = std::lround(seconds);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
