@@ -183,6 +183,7 @@ std::optional<SimdTarget> targetNamed(const std::string& word) {
   const std::vector<SimdTarget> here = supportedSimdTargets();
   if (target && std::find(here.begin(), here.end(), *target) != here.end()) return target;
   std::vector<std::string> names;
+  names.reserve(here.size());
   for (const SimdTarget t : here) names.emplace_back(name(t));
   throw UsageError(fmt::format("--simd {}: this {}; here there are {}", word,
                                target ? "processor does not have it" : "is no SIMD target", fmt::join(names, ", ")));
@@ -282,6 +283,7 @@ Request parseCommandLine(const std::vector<std::string>& arguments) {
   for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
 
   std::vector<const char*> words;
+  words.reserve(arguments.size());
   for (const std::string& word : arguments) words.push_back(word.c_str());
   try {
     app.parse(static_cast<int>(words.size()), words.data());
