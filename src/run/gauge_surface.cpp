@@ -122,7 +122,8 @@ double FluidSurface::crossing(const Vec2& wet, double phiWet, const Vec2& dry, d
       const double middle = 0.5 * (reach + inside);
       (solid(wet + middle * (dry - wet)) ? inside : reach) = middle;
     }
-    phiDry = phiAt(wet + reach * (dry - wet));
+    // Not on the wall itself: which side of it a point there is on is a matter of rounding.
+    phiDry = phiAt(wet + (1.0 - 1e-6) * reach * (dry - wet));
     if (isSolid(phiDry) || isWet(phiDry)) return reach;
   }
   phiDry = std::max(phiDry, 0.0);

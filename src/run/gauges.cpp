@@ -25,8 +25,7 @@ double interpolate(double a, double b, double weight) {
 
 }  // namespace
 
-/// A definition and the readings that are still needed: all from the last one at or before the next time (less the
-/// window) on.
+/// A definition and the readings that are still needed.
 struct GaugeSet::Gauge {
   scene::GaugeDef def;
   std::size_t body = 0;
@@ -81,8 +80,9 @@ struct GaugeSet::Gauge {
     if (readings < width) row += "," + number(meanAt(t));
   }
 
+  /// Drops what no row to come needs: not the next one, nor one that ends the run here.
   void forget() {
-    const std::size_t later = after(due() - window());
+    const std::size_t later = after(std::min(due(), times.back()) - window());
     const std::size_t drop = std::min(later > 0 ? later - 1 : 0, times.size() - 1);
     times.erase(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(drop));
     values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(drop * readings));
