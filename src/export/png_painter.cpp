@@ -21,7 +21,8 @@ constexpr double kWall = 4.0, kOutline = 1.5;
 constexpr double kTallest = 1.4;       // view, against the picture's width
 constexpr double kSmallestUnit = 0.6;  // letters stay legible in small pictures
 constexpr double kBar = 340.0;
-constexpr double kSmallestBullet = 1.25;
+constexpr double kSmallestBullet = 1.25;  // radius
+constexpr double kSmallestDrop = 3.5;     // radius of a fluid's particle that is seen by itself [pixels]
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
 
 void grey(cairo_t* cr, double level) { cairo_set_source_rgb(cr, level, level, level); }
@@ -125,7 +126,7 @@ void PngPainter::drawParticles(const World& world, std::uint8_t* data, int strid
       discs.push_back(
           {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(scale_.position(value))});
     }
-    paintDiscs(canvas, discs, radius);
+    paintDiscs(canvas, discs, radius, isFluid && radius < kSmallestDrop ? Look::Together : Look::Apart);
   }
 }
 

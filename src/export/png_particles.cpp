@@ -9,11 +9,12 @@
 namespace froude::exporting {
 namespace {
 
-constexpr double kSmallestSeen = 3.5;  // radius [pixels]
-// Small discs are a little wider than their particle's share of the area: water that is stretched by a few per cent
-// must not show the paper between its particles.
-constexpr double kOverlap = 1.25;
+// Together, discs are wider than their particle's share of the area: the corners between four of them close, also where
+// water is stretched by a few per cent, and no paper shows through.
+constexpr double kOverlap = 1.5;
 constexpr float kRim = 1.0f, kRimShade = 0.72f;  // width [pixels]; of the colour inside
+constexpr float kSmallestRimmed = 3.0f;          // radius [pixels]
+constexpr float kSmallestRound = 1.0f;           // radius [pixels]; below it a disc is the square of its area
 constexpr Color kNeutral{70, 70, 70};
 
 Color colorOf(float place) {
@@ -56,63 +57,96 @@ void forDisc(const Canvas& canvas, const Disc& d, float radius, Paint&& paint) {
     }
 }
 
+/// Calls paint(x, y, coverage) for the pixels of a square: a disc too small to look round, and cheaper.
+template <typename Paint>
+void forSquare(const Canvas& canvas, const Disc& d, float half, Paint&& paint) {
+  const float left = d.x - half, top = d.y - half, right = d.x + half, bottom = d.y + half;
+  const int x0 = std::max(canvas.left, static_cast<int>(std::floor(left)));
+  const int x1 = std::min(canvas.right, static_cast<int>(std::ceil(right)));
+  const int y0 = std::max(canvas.top, static_cast<int>(std::floor(top)));
+  const int y1 = std::min(canvas.bottom, static_cast<int>(std::ceil(bottom)));
+  for (int y = y0; y < y1; ++y) {
+    const float tall = std::min(bottom, static_cast<float>(y + 1)) - std::max(top, static_cast<float>(y));
+    for (int x = x0; x < x1; ++x)
+      paint(x, y, tall * (std::min(right, static_cast<float>(x + 1)) - std::max(left, static_cast<float>(x))));
+  }
+}
+
 std::uint32_t& pixelAt(const Canvas& canvas, int x, int y) {
   return reinterpret_cast<std::uint32_t*>(canvas.data + static_cast<std::ptrdiff_t>(y) * canvas.stride)[x];
 }
 
-/// A small disc is the square of its area: cheap, and squares of neighbours tile the plane, so that water
-/// has no moiré. Neutral discs are kept apart, for they have no value to average.
-void paintSmall(const Canvas& canvas, const std::vector<Disc>& discs, double radius) {
-  const int width = canvas.right - canvas.left, height = canvas.bottom - canvas.top;
+/// What each pixel of the canvas has of the discs so far.
+class MeanLayer {
+ public:
+  explicit MeanLayer(const Canvas& canvas)
+      : canvas_(canvas),
+        width_(canvas.right - canvas.left),
+        pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(canvas.bottom - canvas.top)) {}
+
+  void add(int x, int y, float coverage, float place) {
+    Pixel& p = pixels_[index(x, y)];
+    if (std::isnan(place)) {
+      p.neutral += coverage;
+    } else {
+      p.weight += coverage;
+      p.value += coverage * place;
+    }
+  }
+
+  void paint() const {
+    for (int y = canvas_.top; y < canvas_.bottom; ++y)
+      for (int x = canvas_.left; x < canvas_.right; ++x) {
+        const Pixel& p = pixels_[index(x, y)];
+        if (p.weight > 0.0f) blend(pixelAt(canvas_, x, y), colorOf(p.value / p.weight), std::min(1.0f, p.weight));
+        if (p.neutral > 0.0f) blend(pixelAt(canvas_, x, y), kNeutral, std::min(1.0f, p.neutral));
+      }
+  }
+
+ private:
   struct Pixel {
     float weight = 0.0f, value = 0.0f, neutral = 0.0f;
   };
-  std::vector<Pixel> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const float half = static_cast<float>(kOverlap * 0.5 * std::sqrt(kPi) * radius);
-  for (const Disc& d : discs) {
-    const float left = d.x - half - static_cast<float>(canvas.left), top = d.y - half - static_cast<float>(canvas.top);
-    const float right = left + 2.0f * half, bottom = top + 2.0f * half;
-    const int x0 = std::max(0, static_cast<int>(std::floor(left))), y0 = std::max(0, static_cast<int>(std::floor(top)));
-    const int x1 = std::min(width, static_cast<int>(std::ceil(right)));
-    const int y1 = std::min(height, static_cast<int>(std::ceil(bottom)));
-    for (int y = y0; y < y1; ++y) {
-      const float tall = std::min(bottom, static_cast<float>(y + 1)) - std::max(top, static_cast<float>(y));
-      for (int x = x0; x < x1; ++x) {
-        const float wide = std::min(right, static_cast<float>(x + 1)) - std::max(left, static_cast<float>(x));
-        Pixel& p = pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-        if (std::isnan(d.place)) {
-          p.neutral += wide * tall;
-        } else {
-          p.weight += wide * tall;
-          p.value += wide * tall * d.place;
-        }
-      }
-    }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - canvas_.top) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x - canvas_.left);
   }
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const Pixel& p =
-          pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-      std::uint32_t& pixel = pixelAt(canvas, canvas.left + x, canvas.top + y);
-      if (p.weight > 0.0f) blend(pixel, colorOf(p.value / p.weight), std::min(1.0f, p.weight));
-      if (p.neutral > 0.0f) blend(pixel, kNeutral, std::min(1.0f, p.neutral));
-    }
+
+  const Canvas& canvas_;
+  int width_;
+  std::vector<Pixel> pixels_;
+};
+
+void paintTogether(const Canvas& canvas, const std::vector<Disc>& discs, float radius) {
+  MeanLayer layer(canvas);
+  const float half = 0.5f * std::sqrt(static_cast<float>(kPi)) * radius;
+  for (const Disc& d : discs) {
+    if (radius < kSmallestRound)
+      forSquare(canvas, d, half, [&](int x, int y, float coverage) { layer.add(x, y, coverage, d.place); });
+    else
+      forDisc(canvas, d, radius, [&](int x, int y, float coverage, float) { layer.add(x, y, coverage, d.place); });
+  }
+  layer.paint();
+}
+
+void paintApart(const Canvas& canvas, const std::vector<Disc>& discs, float radius) {
+  const float shade = radius < kSmallestRimmed ? 1.0f : kRimShade;
+  for (const Disc& d : discs) {
+    const Color c = colorOf(d.place);
+    forDisc(canvas, d, radius, [&](int x, int y, float coverage, float core) {
+      blend(pixelAt(canvas, x, y), shaded(c, shade + (1.0f - shade) * core), coverage);
+    });
+  }
 }
 
 }  // namespace
 
-void paintDiscs(const Canvas& canvas, const std::vector<Disc>& discs, double radius) {
+void paintDiscs(const Canvas& canvas, const std::vector<Disc>& discs, double radius, Look look) {
   if (discs.empty() || canvas.right <= canvas.left || canvas.bottom <= canvas.top) return;
-  if (radius < kSmallestSeen) {
-    paintSmall(canvas, discs, radius);
-    return;
-  }
-  for (const Disc& d : discs) {
-    const Color c = colorOf(d.place);
-    forDisc(canvas, d, static_cast<float>(radius), [&](int x, int y, float coverage, float core) {
-      blend(pixelAt(canvas, x, y), shaded(c, kRimShade + (1.0f - kRimShade) * core), coverage);
-    });
-  }
+  if (look == Look::Together)
+    paintTogether(canvas, discs, static_cast<float>(kOverlap * radius));
+  else
+    paintApart(canvas, discs, static_cast<float>(radius));
 }
 
 }  // namespace froude::exporting

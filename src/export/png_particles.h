@@ -21,10 +21,12 @@ struct Canvas {
   int left, top, right, bottom;  // painted pixels: left ≤ x < right, top ≤ y < bottom
 };
 
-/// Paints discs of one radius [pixels] in their order. Small ones (under 3.5 pixels) are not seen one by one: there
-/// each pixel takes the mean value of the discs in it, by the area that each covers, so that a dense fluid is a smooth
-/// surface whatever the ratio of its spacing to the pixels. Larger ones are painted one over the other, with a darker
-/// rim.
-void paintDiscs(const Canvas& canvas, const std::vector<Disc>& discs, double radius);
+/// Apart: one by one in their order, with a darker rim where there is room for one. Together: each pixel takes the mean
+/// value of the discs in it, by the area that each covers, and the discs are half as wide again, so that a dense fluid
+/// is a smooth surface whatever the ratio of its spacing to the pixels.
+enum class Look { Apart, Together };
+
+/// Paints discs of one radius [pixels].
+void paintDiscs(const Canvas& canvas, const std::vector<Disc>& discs, double radius, Look look);
 
 }  // namespace froude::exporting
