@@ -48,7 +48,7 @@ Film makeFilm(const std::string& folder, double every) {
                                                        "-i",
                                                        "frame_%05d.png",
                                                        "-vf",
-                                                       "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                                       "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white",
                                                        "-c:v",
                                                        "libx264",
                                                        "-preset",
