@@ -1,8 +1,8 @@
 // froude check: reads and judges scenes, runs nothing.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
-#include <new>
 #include <nlohmann/json.hpp>
 
 #include "run/machine.h"
@@ -41,15 +41,27 @@ Verdict judgeFile(const std::string& file) {
   return verdict;
 }
 
+std::string counted(std::size_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// 1254.3 → 1300: no more digits than an estimate has.
+double twoDigits(double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return unit < 1.0 ? std::round(value) : std::round(value / unit) * unit;
+}
+
 std::string sentence(const Verdict& verdict) {
   if (!verdict.scene) return "wrong";
   const Scene& scene = *verdict.scene;
-  std::string text = scene.warnings.empty() ? "sound"
-                                            : fmt::format("runs, with {} warning{}", scene.warnings.size(),
-                                                          scene.warnings.size() == 1 ? "" : "s");
-  text += fmt::format(": {} fluid particles, {} bullets, {} bodies, {}", scene.fluidParticles(), scene.bulletCount(),
-                      scene.world.bodies.size(), run::bytesInWords(verdict.cost.bytes));
-  return text + fmt::format(", about {:.2g} sub-steps for {} s", verdict.cost.substeps, scene.duration);
+  const std::string soundness =
+      scene.warnings.empty() ? "sound" : "runs, with " + counted(scene.warnings.size(), "warning", "warnings");
+  return fmt::format("{}: {}, {}, {}, {}, about {:.0f} sub-steps for {} s", soundness,
+                     counted(scene.fluidParticles(), "fluid particle", "fluid particles"),
+                     counted(scene.bulletCount(), "bullet", "bullets"),
+                     counted(scene.world.bodies.size(), "body", "bodies"), run::bytesInWords(verdict.cost.bytes),
+                     twoDigits(verdict.cost.substeps), scene.duration);
 }
 
 nlohmann::json report(const Verdict& verdict) {

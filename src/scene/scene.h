@@ -41,29 +41,29 @@ struct Warning {
 /// A gauge, as the format describes it; unused fields keep their defaults.
 struct GaugeDef {
   std::string name, type;
-  double every = 0.0;                       // [s]
-  char axis = 'x';                          // front
-  double quantile = 0.995;                  // front
-  double x = 0.0;                           // height
-  Vec2 at{0, 0};                            // pressure, velocity
-  double window = 0.0;                      // pressure [s]; 0: none
-  Vec2 from{0, 0}, to{0, 0};                // profile
-  int count = 0;                            // profile
-  std::string body;                         // force, pose
-  std::optional<Species> species;           // energy, momentum, mass, count
+  double every = 0.0;              // [s]
+  char axis = 'x';                 // front
+  double quantile = 0.995;         // front
+  double x = 0.0;                  // height
+  Vec2 at{0, 0};                   // pressure, velocity
+  double window = 0.0;             // pressure [s]; 0: none
+  Vec2 from{0, 0}, to{0, 0};       // profile
+  int count = 0;                   // profile
+  std::string body;                // force, pose
+  std::optional<Species> species;  // energy, momentum, mass, count
 };
 
 struct PngDef {
   int width = 1280;
-  Box view;                                 // default: the domain
-  std::string color = "speed";              // "speed" | "pressure" | "density"
+  Box view;                                    // default: the domain
+  std::string color = "speed";                 // "speed" | "pressure" | "density"
   std::optional<std::array<double, 2>> range;  // default: fixed from the scene's own scales
 };
 
 struct OutputDef {
-  double every = 0.02;                      // [s] of simulated time between frames
+  double every = 0.02;  // [s] of simulated time between frames
   bool h5 = true, png = true, vdb = false;
-  double checkpoint = 60.0;                 // [s] of wall time
+  double checkpoint = 60.0;  // [s] of wall time
   PngDef image;
 };
 
@@ -75,18 +75,18 @@ struct SeededBlock {
 
 /// A scene read from a file. Shapes are resolved, particles are placed; nothing has been written.
 struct Scene {
-  std::string file;                         // as given
-  std::string name;                         // file name without .toml
+  std::string file;  // as given
+  std::string name;  // file name without .toml
   std::string title;
-  double duration = 0.0;                    // [s]
+  double duration = 0.0;  // [s]
   WorldDef world;
   std::vector<SeededBlock> fluidBlocks, bulletBlocks;
   std::vector<GaugeDef> gauges;
   OutputDef output;
   std::vector<Warning> warnings;
-  std::vector<std::string> notes;           // repairs of polygons, what was cut: said once, on stderr
-  std::string resolved;                     // a scene file of everything, shapes inlined, that gives the same run
-  std::string sha256;                       // of the file's bytes [hex]
+  std::vector<std::string> notes;  // repairs of polygons, what was cut: said once, on stderr
+  std::string resolved;            // a scene file of everything, shapes inlined, that gives the same run
+  std::string sha256;              // of the file's bytes [hex]
 
   std::size_t fluidParticles() const;
   std::size_t bulletCount() const;
@@ -95,8 +95,8 @@ struct Scene {
 /// One `--set PATH=VALUE`, applied after parsing and before checking.
 using Override = std::pair<std::string, std::string>;
 
-/// Reads, checks, resolves and seeds. Throws SceneError. The memory that the particles would need is judged before any is
-/// placed.
+/// Reads, checks, resolves and seeds. Throws SceneError. The memory that the particles would need is judged before any
+/// is placed.
 Scene load(const std::string& file, const std::vector<Override>& overrides = {});
 
 /// Builds the world of a scene and fills it with its particles.
