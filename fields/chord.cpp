@@ -36,7 +36,7 @@ class ContactSearch {
         rounding_(0.0625 * chord.skin),
         slack_(chord.slack),
         curved_(chord.slack > rounding_),
-        exact_(chord.radius == 0.0 && chord.slack == 0.0) {}
+        exact_(chord.radius == 0.0 && chord.slack == 0.0 && chord.floor < 0.5 * chord.skin) {}
 
   const ChordHit& best() const { return best_; }
   double reach() const { return reach_; }
@@ -48,7 +48,7 @@ class ContactSearch {
     const double sPath = -cross(e.direction, path_);
     if (sFrom > reach_ && sFrom + sPath > reach_) return;  // outside this edge's line all the way, so of its start too
     testEdge(index, e, arm, sFrom, sPath);
-    if (e.convexStart != 0) testStart(index, e, arm);
+    if (e.convexStart != 0 && !exact_) testStart(index, e, arm);
   }
 
   /// What must not happen, a path that gets deep inside without a contact, ends where it is.
@@ -71,12 +71,10 @@ class ContactSearch {
     const double sBegin = sFrom + part.begin * sPath;
     const double sEnd = sFrom + part.end * sPath;
     if (sBegin < -skin_) return;  // from behind: the path enters, if it does, elsewhere
-    if (exact_ && sBegin < 0.5 * skin_) {
-      const bool deeper = sEnd < sBegin - rounding_ && orientation(e.a, e.b, from_) > 0;
-      if (deeper || crossesExactly(index, e)) keep({true, part.begin, index, false});
-      return;
-    }
-    if (curved_) {
+    if (exact_) {
+      const bool deeper = sBegin < 0.0 && sEnd < sBegin - rounding_ && orientation(e.a, e.b, from_) > 0;
+      if (!deeper && !crossesExactly(index, e)) return;
+    } else if (curved_) {
       if (sBegin > reach_ ? sEnd >= reach_ : sPath >= 4.0 * slack_) return;
     } else if (sEnd >= near_) {
       return;
@@ -96,7 +94,6 @@ class ContactSearch {
     }
     const Vec2 armBegin = arm + part.begin * path_;
     const double begin = armBegin.norm();
-    if (exact_ && begin < 0.5 * skin_) return;  // decided with the edges
     const double length = path_.norm();
     if (length == 0.0) return;
     const double derivative = armBegin.dot(path_) / length;
@@ -138,7 +135,7 @@ class ContactSearch {
   const double near_;   // what stays farther is no contact
   const double skin_, rounding_, slack_;
   const bool curved_;
-  const bool exact_;
+  const bool exact_;  // a point that starts in contact: only what really crosses an edge counts
   ChordHit best_;
 };
 

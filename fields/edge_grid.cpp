@@ -44,16 +44,18 @@ FieldSample EdgeGrid::sample(const Vec2& p) const {
   Nearest closest{*this, p};
   visitBySource(closest, edges_, candidates, [](std::uint32_t) { return true; });
   FROUDE_ASSERT(closest.any);
+  // Beyond its reach a cell knows of one outline but not of others.
+  const double reach = kBandMargin * band_;
+  if (!oneOutline() && std::abs(closest.best) > reach * reach) return bound(p, std::copysign(reach, closest.best));
   return makeSample(p, closest.bestEdge, closest.best < 0.0);
 }
 
 FieldSample EdgeGrid::sampleExact(const Vec2& p) const {
   if (inGrid(p)) {
-    const std::size_t cell = cellOf(p);
-    if (!nearest(cell).empty()) return sample(p);
+    const FieldSample near = sample(p);
+    if (near.exact) return near;
     // Inside several outlines the deepest one counts, which need not be the nearest.
-    const bool oneOutline = sourceStarts_.size() == 2;
-    if (sealed_ && (oneOutline || clearance_[cell] > 0.0F)) return searchRings(p, clearance_[cell]);
+    if (sealed_ && (oneOutline() || near.distance > 0.0)) return searchRings(p, near.distance);
   }
   Nearest closest{*this, p};
   for (std::uint32_t source = 0; source + 1 < sourceStarts_.size(); ++source) {
@@ -155,7 +157,9 @@ FieldSample EdgeGrid::searchRings(const Vec2& p, double clearance) const {
     }
   };
   const int last = std::max(nx_, ny_);
-  int ring = std::isfinite(clearance) ? std::max(1, static_cast<int>(std::abs(clearance) * inverseCell_) - 1) : last;
+  // A cell of ring r reaches out to (r + 1) diagonals.
+  int ring =
+      std::isfinite(clearance) ? std::max(0, static_cast<int>(0.7 * std::abs(clearance) * inverseCell_) - 1) : last;
   for (; ring < last && best > (ring - 1) * (ring - 1) * cell_ * cell_; ++ring) {
     for (int k = -ring; k <= ring; ++k) {
       visitCell(ci + k, cj - ring);

@@ -114,6 +114,7 @@ class EdgeGrid {
   void layOut(const GridPlan& plan);
   /// True if every point outside the grid is outside everything.
   bool freeOutside() const { return sealed_ && !walls_; }
+  bool oneOutline() const { return sourceStarts_.size() == 2; }
   FieldSample bound(const Vec2& p, double clearance) const;
   FieldSample searchRings(const Vec2& p, double clearance) const;
   FieldSample makeSample(const Vec2& p, std::uint32_t edge, bool inside) const;

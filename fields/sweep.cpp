@@ -21,13 +21,17 @@ bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& 
   return true;
 }
 
-Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, const Vec2& normal, double radius, double clearance) {
-  const Vec2 none(0.0, 0.0);
-  const FieldSample here = grid.sample(center);
-  if (!here.exact || here.distance >= radius + 0.75 * clearance) return none;
-  const Vec2 shift = (radius + clearance - here.distance) * normal;
-  const FieldSample there = grid.sample(center + shift);
-  return there.distance > std::max(here.distance, radius + 0.5 * clearance) ? shift : none;
+Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, double radius, double clearance) {
+  const double before = grid.sample(center).distance;
+  Vec2 shifted = center;
+  double distance = before;
+  // Off the nearest feature first; in a corner its neighbour then is the nearest.
+  for (int round = 0; round < 4 && distance < radius + 0.75 * clearance; ++round) {
+    const FieldSample here = grid.sample(shifted);
+    shifted += (radius + clearance - here.distance) * here.normal;
+    distance = grid.sample(shifted).distance;
+  }
+  return distance > before ? Vec2(shifted - center) : Vec2(0.0, 0.0);
 }
 
 SweepHit sweepStill(const EdgeGrid& grid, const Vec2& from, const Vec2& to, double radius, const FieldSample& atStart,
@@ -48,7 +52,7 @@ SweepHit sweepChord(const EdgeGrid& grid, const Chord& chord, const FieldSample&
   const Vec2 normal = contactNormal(grid, contact, center);
   hit.hit = true;
   hit.time = contact.time;
-  hit.center = center + pushOut(grid, center, normal, chord.radius, chord.skin);
+  hit.center = center + pushOut(grid, center, chord.radius, chord.skin);
   hit.point = contactPoint(grid, contact, center);
   hit.normal = normal;
   hit.edge = static_cast<std::int32_t>(contact.edge);
@@ -205,7 +209,7 @@ SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double
       hit.time = curve.time;
       hit.normal = detail::contactNormal(grid, curve.contact, center);
       hit.point = detail::contactPoint(grid, curve.contact, center);
-      hit.center = center + detail::pushOut(grid, center, hit.normal, radius, curve.clearance);
+      hit.center = center + detail::pushOut(grid, center, radius, curve.clearance);
       hit.edge = static_cast<std::int32_t>(curve.contact.edge);
     }
   }

@@ -16,9 +16,9 @@ double skinFor(const EdgeGrid& grid, std::initializer_list<Vec2> points);
 bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& center, const Chord& chord,
                   SweepHit* hit);
 
-/// Where to put a disc that touched at `center` with outward `normal`: a little outwards, to `clearance` [m] beyond its
-/// radius, if it is closer than three quarters of that and there is room. Returns the shift.
-Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, const Vec2& normal, double radius, double clearance);
+/// How to shift a disc that touches at `center`, so that it is `clearance` [m] beyond its radius off the solid; zero if
+/// it is already three quarters of that off, or if there is no room.
+Vec2 pushOut(const EdgeGrid& grid, const Vec2& center, double radius, double clearance);
 
 /// The whole sweep for a solid at rest, given the field's answer at the start.
 SweepHit sweepStill(const EdgeGrid& grid, const Vec2& from, const Vec2& to, double radius, const FieldSample& atStart,
