@@ -91,7 +91,16 @@ void World::Impl::openAccounts() {
   ledger.maxKinetic = present.kinetic;
 }
 
-double World::Impl::energyScale() const { return std::max({std::abs(ledger.energy0), ledger.maxKinetic, 1e-300}); }
+// At least the energy of creeping by a tenth of a support radius in a hundredth of a second: a scene without gravity
+// that is at rest has no energy of its own to measure a gain against.
+double World::Impl::energyScale() const {
+  double creep = 0.0;
+  if (fluidModel != nullptr) {
+    const double speed = 10.0 * fluidModel->supportRadius();
+    creep = 0.5 * fluidModel->particleMass() * static_cast<double>(fluid->size()) * speed * speed;
+  }
+  return std::max({std::abs(ledger.energy0), ledger.maxKinetic, creep, 1e-300});
+}
 
 double World::Impl::outsideWork(const StepStats& stats, const Balance& after, double dt) const {
   double work = stats.gravityWork + impulses.work();

@@ -70,6 +70,7 @@ struct World::Impl {
   double gravityScale = 0.0;  // largest |g| seen [m/s²]
   Balance present;            // of the state as it stands
   bool anyLifetime = false;
+  bool insideStep = false;    // substep() is called by step(), which counts
   bool started = false;       // the accounts hold the start's energy and momentum
   std::uint64_t version = 0;  // of the particles' places, for queries between steps
   mutable FluidQuery query;

@@ -16,6 +16,7 @@ double wrapped(double x, double low, double high) { return x - std::floor((x - l
 StepReport World::substep(double maxDt) {
   Impl& w = *impl_;
   StepReport report;
+  w.ledger.steps += w.insideStep ? 0 : 1;
   w.quarantine();
   w.openAccounts();
   StepBound bound = w.chooseStep(maxDt);
@@ -52,8 +53,9 @@ StepReport World::substep(double maxDt) {
 
 StepReport World::step(double dt) {
   StepReport total;
-  ++impl_->ledger.steps;
   if (!(dt > 0.0)) return total;
+  ++impl_->ledger.steps;
+  impl_->insideStep = true;
   const double end = time() + dt;
   // The last sub-step ends at the end to rounding; what is left is then below the resolution of time.
   while (end - time() > 1e-12 * std::max(1.0, end)) {
@@ -68,6 +70,7 @@ StepReport World::step(double dt) {
     total.troubleAt = part.troubleAt;
     if (!part.ok()) break;
   }
+  impl_->insideStep = false;
   return total;
 }
 

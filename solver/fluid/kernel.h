@@ -15,6 +15,10 @@ namespace froude::kernel {
 inline constexpr double kSupport = 2.0;
 /// Sum over the lattices named above, for particles; walls are integrals and have none.
 inline constexpr double kLatticeSum = 1.0169;
+/// Σ of the gradient's linear moment, −½ Σ r·∇W, over the hexagonal lattice that a fluid under pressure takes: the
+/// share of a pressure gradient that the particles feel, and so what a multiplier counts as pressure (square lattice:
+/// 0.977).
+inline constexpr double kGradientMoment = 0.935;
 /// Factor of the shape m⁴ (1 + kTail m⁶) for particles.
 inline constexpr double kNorm = 1.0 / (kPi * kLatticeSum);
 inline constexpr double kTail = 0.55;

@@ -18,8 +18,9 @@ constexpr double kLongestMiter = 4.0;  // of the recession, at needles
 
 Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized(); }
 
-// Moves each edge into its solid by the recession, edges that share a vertex together.
-void recede(std::span<WallEdge> edges) {
+// Moves each edge that faces the particle into its solid by the recession, edges that share a vertex together, and
+// drops the others. Returns how many are left.
+std::size_t recede(std::span<WallEdge> edges) {
   std::array<Vec2, kMaxWallEdges> startShift, endShift;
   for (std::size_t i = 0; i < edges.size(); ++i) startShift[i] = endShift[i] = -kRecession * outwardNormal(edges[i]);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -32,10 +33,14 @@ void recede(std::span<WallEdge> edges) {
       startShift[j] = shift;
     }
   }
+  // Which faces look at the particle is decided where they stand: a thin plate's far face would recede past the near
+  // one.
+  std::size_t front = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    edges[i].a += startShift[i];
-    edges[i].b += endShift[i];
+    if (cross(edges[i].a, edges[i].b) >= 0.0) continue;
+    edges[front++] = {edges[i].a + startShift[i], edges[i].b + endShift[i], edges[i].owner};
   }
+  return front;
 }
 
 }  // namespace
@@ -97,9 +102,9 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   bool facesAway = false;
   for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
   if (facesAway) findHidden(edges, grid, x, y, i, block);
-  recede({buffer.data(), n});
+  const std::size_t front = recede({buffer.data(), n});
   std::array<WallShare, kMaxWallEdges> shares;
-  const std::size_t owners = integrateWalls(edges, shares);
+  const std::size_t owners = integrateWalls({buffer.data(), front}, shares);
   for (std::size_t k = 0; k < owners; ++k) {
     const WallShare& share = shares[k];
     lambda_[i] += static_cast<float>(share.lambda);

@@ -1,0 +1,180 @@
+// The pair loops: the wide ones against the scalar ones, and those against sums over all pairs in double.
+#include <froude/solver/fluid/pair_loops.h>
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include <froude/base/random.h>
+#include <froude/solver/fluid/fluid_cells.h>
+#include <froude/solver/fluid/kernel.h>
+#include <froude/solver/fluid/lattice.h>
+
+namespace froude {
+namespace {
+
+// Particles in a box of 20 × 12 spacings whose corner is far from the origin, sorted by cell.
+struct Cloud {
+  explicit Cloud(std::size_t n, bool periodic = false) {
+    domain.box = {origin, origin + Vec2(20.0, 12.0)};
+    domain.periodicX = domain.periodicY = periodic;
+    RandomStream random(3, n);
+    std::vector<double> px(n), py(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      px[i] = origin.x() + random.uniform(0.0, 20.0);
+      py[i] = origin.y() + random.uniform(0.0, 12.0);
+    }
+    grid.build(px, py, fluidFrame(domain, px, py, 2.1));
+    for (AlignedArray<double>* a : {&x, &y}) a->resize(n);
+    for (AlignedArray<std::int32_t>* a : {&latticeX, &latticeY}) a->resize(n);
+    for (AlignedArray<float>* a : {&lambda, &wallX, &wallY, &tangent, &shiftX, &shiftY, &value}) a->resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      x[k] = px[grid.order()[k]];
+      y[k] = py[grid.order()[k]];
+      latticeX[k] = lattice::coordinate(x[k] - origin.x());
+      latticeY[k] = lattice::coordinate(y[k] - origin.y());
+      value[k] = static_cast<float>(random.uniform(0.0, 0.1));
+      if (k % 3 == 0) {
+        lambda[k] = 0.2f;
+        wallX[k] = 0.1f;
+        wallY[k] = -0.4f;
+        tangent[k] = 0.2f / (0.8f * 0.17f);
+      }
+    }
+    findOccupiedCells(grid, cells);
+  }
+  PairFrame frame() const {
+    const Vec2 period = domain.box.size();
+    return {&grid,
+            cells,
+            latticeX.data(),
+            latticeY.data(),
+            domain.periodicX ? lattice::coordinate(period.x()) : 0,
+            domain.periodicY ? lattice::coordinate(period.y()) : 0,
+            {}};
+  }
+  Vec2 origin{12345.0, -777.0};
+  DomainDef domain;
+  CellGrid grid;
+  AlignedArray<double> x, y;
+  AlignedArray<std::int32_t> latticeX, latticeY;
+  AlignedArray<float> lambda, wallX, wallY, tangent, shiftX, shiftY, value;
+  std::vector<std::uint32_t> cells;
+};
+
+struct Outputs {
+  explicit Outputs(std::size_t n)
+      : density(n), diagonal(n), shiftX(n), shiftY(n), changeX(n), changeY(n), newX(n), newY(n) {}
+  AlignedArray<float> density, diagonal, shiftX, shiftY, changeX, changeY;
+  AlignedArray<std::int32_t> newX, newY;
+};
+
+Outputs runAll(const Cloud& c, const PairLoops& loops, const HiddenPairs& hidden = {}) {
+  Outputs out(c.x.size());
+  PairFrame frame = c.frame();
+  frame.hidden = hidden;
+  loops.density(frame,
+                {c.lambda.data(), c.wallX.data(), c.wallY.data(), c.shiftX.data(), c.shiftY.data(), out.density.data(),
+                 out.diagonal.data()},
+                0, c.cells.size());
+  loops.displace(frame,
+                 {c.value.data(), c.wallX.data(), c.wallY.data(), c.tangent.data(), out.shiftX.data(),
+                  out.shiftY.data(), out.newX.data(), out.newY.data()},
+                 0, c.cells.size());
+  loops.viscosity(frame, {c.value.data(), c.lambda.data(), 0.05f, 0.02f, out.changeX.data(), out.changeY.data()}, 0,
+                  c.cells.size());
+  return out;
+}
+
+TEST(PairLoops, the_scalar_loops_equal_sums_over_all_pairs) {
+  for (const bool periodic : {false, true}) {
+    const Cloud c(300, periodic);
+    const Outputs out = runAll(c, scalarPairLoops());
+    const GridFrame& frame = c.grid.frame();
+    for (std::size_t i = 0; i < c.x.size(); ++i) {
+      double density = c.lambda[i], own = c.value[i], squares = 0.0, changeX = 0.0;
+      Vec2 sum(0.0, 0.0), move(0.0, 0.0);
+      const Vec2 g(c.wallX[i], c.wallY[i]);
+      for (std::size_t j = 0; j < c.x.size(); ++j) {
+        const Vec2 d = frame.minimumImage(Vec2(c.x[i] - c.x[j], c.y[i] - c.y[j]));
+        const double q2 = d.squaredNorm();
+        density += kernel::value(q2);
+        const Vec2 gradient = kernel::gradientFactor(q2) * d;
+        sum += gradient;
+        squares += gradient.squaredNorm();
+        move -= (own + c.value[j]) * gradient;
+        changeX += (0.05 * kernel::value(q2) - 0.02 * kernel::gradientFactor(q2)) * (c.value[j] - own);
+      }
+      move -= 2.0 * own * g;
+      const Vec2 along = leftNormal(g);
+      move += static_cast<double>(c.tangent[i]) * along.dot(move) * along;
+      EXPECT_NEAR(out.density[i], density, 3e-6 * density);
+      EXPECT_NEAR(out.diagonal[i], (sum + g).dot(sum + 2.0 * g) + squares, 2e-5);
+      EXPECT_NEAR(out.shiftX[i], move.x(), 3e-6);
+      EXPECT_NEAR(out.shiftY[i], move.y(), 3e-6);
+      EXPECT_NEAR(out.changeX[i], changeX, 1e-6);
+      const double moved =
+          static_cast<double>(lattice::difference(out.newX[i], c.latticeX[i])) / lattice::kUnitsPerSpacing;
+      EXPECT_NEAR(moved, out.shiftX[i], 2e-7);
+    }
+  }
+}
+
+TEST(PairLoops, every_instruction_set_agrees_with_the_scalar_loops) {
+  const Cloud c(2000, true);
+  // Every seventh particle sees every second candidate only.
+  AlignedArray<std::int32_t> offset(c.x.size());
+  AlignedArray<std::uint64_t> words;
+  for (std::uint32_t cell : c.cells) {
+    for (std::uint32_t i = c.grid.cellStart()[cell]; i < c.grid.cellStart()[cell + 1]; ++i) {
+      offset[i] = -1;
+      if (i % 7 != 0) continue;
+      offset[i] = static_cast<std::int32_t>(words.size());
+      c.grid.forEachRun(cell, [&](const CellRun& run) {
+        for (std::uint32_t k = run.begin; k < run.end; k += 64) words.push_back(0x5555555555555555ull);
+      });
+    }
+  }
+  const HiddenPairs hidden{offset.data(), words.data()};
+  const Outputs expected = runAll(c, scalarPairLoops(), hidden);
+  for (const SimdTarget target : supportedSimdTargets()) {
+    const Outputs out = runAll(c, pairLoops(target), hidden);
+    for (std::size_t i = 0; i < c.x.size(); ++i) {
+      ASSERT_NEAR(out.density[i], expected.density[i], 4e-6 * expected.density[i]) << name(target);
+      ASSERT_NEAR(out.diagonal[i], expected.diagonal[i], 1e-5 * (1.0 + expected.diagonal[i])) << name(target);
+      ASSERT_NEAR(out.shiftX[i], expected.shiftX[i], 4e-6) << name(target);
+      ASSERT_NEAR(out.shiftY[i], expected.shiftY[i], 4e-6) << name(target);
+      ASSERT_NEAR(out.changeY[i], expected.changeY[i], 4e-6) << name(target);
+      ASSERT_LE(std::abs(lattice::difference(out.newY[i], expected.newY[i])), 32) << name(target);
+    }
+  }
+}
+
+TEST(PairLoops, lattice_coordinates_keep_differences_far_from_the_origin) {
+  for (const double origin : {0.0, 1e4, 1e9}) {
+    const std::int32_t a = lattice::coordinate(origin + 0.25), b = lattice::coordinate(origin + 1.5);
+    EXPECT_NEAR(static_cast<double>(lattice::difference(b, a)) / lattice::kUnitsPerSpacing, 1.25, 2.4e-7);
+  }
+}
+
+TEST(PairLoops, the_kernel_integrates_to_one_and_its_lattice_sums_agree) {
+  double integral = 0.0;
+  for (int k = 0; k < 20000; ++k) {
+    const double q = 2.0 * (k + 0.5) / 20000;
+    integral += kernel::value(q * q) * kernel::kLatticeSum * 2.0 * kPi * q * 2.0 / 20000;
+  }
+  EXPECT_NEAR(integral, 1.0, 1e-8);
+  double square = 0.0, hexagonal = 0.0;
+  const double a = std::sqrt(2.0 / std::sqrt(3.0));
+  for (int i = -4; i <= 4; ++i) {
+    for (int j = -4; j <= 4; ++j) {
+      square += kernel::value(i * i + j * j);
+      hexagonal += kernel::value(a * a * (i * i + i * j + j * j));
+    }
+  }
+  EXPECT_NEAR(square, 1.0, 1.5e-3);
+  EXPECT_NEAR(hexagonal, 1.0, 1.5e-3);
+}
+
+}  // namespace
+}  // namespace froude
