@@ -58,6 +58,8 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
   const double support = kernel::kSupport * spacing_;
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
     Block& block = blocks_[begin / kBlockSize];
+    block.links.reserve(kBlockSize);  // at once, so that a splash on a wall allocates nothing
+    block.words.reserve(kBlockSize);
     block.links.clear();
     block.words.clear();
     for (std::size_t i = begin; i < end; ++i) {
