@@ -88,7 +88,7 @@ void meet(const Target& target, const Encounter& e, Tally* tally) {
   tally->leaks += leaks;
 }
 
-TEST(Leaks, none_in_random_swept_encounters_with_thin_concave_and_spinning_polygons) {
+TEST(LongLeaks, none_in_random_swept_encounters_with_thin_concave_and_spinning_polygons) {
   const bool longRun = std::getenv("FROUDE_LONG") != nullptr;
   const long wanted = longRun ? 10000000 : 1000000;
   const std::vector<Target> targets = makeTargets(64);
