@@ -133,17 +133,18 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
       r = {};
       r.first = start[cells[k]];
       r.last = start[cells[k] + 1];
-      bool usual = true;
-      std::uint32_t count = 0;
+      bool plain = true;
+      std::uint32_t count = 0, beyond = 0;
       grid.forEachRun(cells[k], [&](const CellRun& run) {
         const std::uint32_t length = run.end - run.begin;
-        usual = usual && count < 3 && length <= CellRuns::kUsual && run.shiftX == 0.0 && run.shiftY == 0.0;
-        if (!usual) return;
+        beyond += length - std::min(length, CellRuns::kUsual);
+        plain = plain && count < 3 && beyond <= CellRuns::kUsual && run.shiftX == 0.0 && run.shiftY == 0.0;
+        if (!plain) return;
         r.begin[count] = run.begin;
         r.count[count++] = static_cast<std::uint16_t>(length);
       });
-      for (std::uint32_t i = r.first; hidden.offset != nullptr && i < r.last; ++i) usual &= hidden.offset[i] < 0;
-      r.usual = usual ? 1 : 0;
+      for (std::uint32_t i = r.first; hidden.offset != nullptr && i < r.last; ++i) plain &= hidden.offset[i] < 0;
+      if (plain) r.kind = beyond == 0 ? CellRuns::Kind::Usual : CellRuns::Kind::Long;
     }
   });
 }

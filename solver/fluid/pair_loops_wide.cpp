@@ -65,12 +65,13 @@ HWY_INLINE void collectRuns(const PairFrame& frame, std::uint32_t cell, Runs& ru
 }
 
 // The candidates of a cell, in half spacings from a reference in the cell, and up to two values of each; lanes without
-// a candidate are out of reach. The usual cell has three runs of at most 16, which stay in registers.
+// a candidate are out of reach. The usual cell has three runs of at most 16, which stay in registers; what three longer
+// ones have beyond 16 shares one more.
 constexpr std::uint32_t kPerRun = CellRuns::kUsual / kLanes;
 constexpr std::uint32_t kVectors = 3 * kPerRun;
 template <int kValues>
 struct UsualCell {
-  VF x[kVectors], y[kVectors], value[kValues > 0 ? kValues : 1][kVectors];
+  VF x[kVectors + kPerRun], y[kVectors + kPerRun], value[kValues > 0 ? kValues : 1][kVectors + kPerRun];
 };
 
 template <int kValues>
@@ -149,6 +150,35 @@ HWY_INLINE void storeMoved(const std::int32_t* from, VF spacings, std::int32_t* 
   for (std::uint32_t k = 0; k < count; ++k) to[k] = lattice::sum(from[k], values[k]);
 }
 
+// The candidates beyond the 16th of each run.
+template <int kValues>
+HWY_INLINE void loadBeyond(const PairFrame& frame, const CellRuns& runs, const float* const* values,
+                           UsualCell<kValues>& c) {
+  const F f;
+  const I n;
+  alignas(64) std::int32_t x[CellRuns::kUsual], y[CellRuns::kUsual];
+  alignas(64) float value[kValues + 1][CellRuns::kUsual] = {};
+  std::uint32_t count = 0;
+  for (std::uint32_t r = 0; r < 3; ++r) {
+    for (std::uint32_t k = CellRuns::kUsual; k < runs.count[r]; ++k, ++count) {
+      x[count] = frame.x[runs.begin[r] + k];
+      y[count] = frame.y[runs.begin[r] + k];
+      for (int a = 0; a < kValues; ++a) value[a][count] = values[a][runs.begin[r] + k];
+    }
+  }
+  for (std::uint32_t k = count; k < CellRuns::kUsual; ++k) x[k] = y[k] = 0;
+  const VF scale = hn::Set(f, 0.5f * kUnit), far = hn::Set(f, kFar);
+  const VI fromX = hn::Set(n, frame.x[runs.first]), fromY = hn::Set(n, frame.y[runs.first]);
+  for (std::uint32_t v = 0; v < kPerRun; ++v) {
+    const std::uint32_t k = v * kLanes;
+    const auto inside = hn::FirstN(f, count > k ? count - k : 0);
+    const VF dx = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Load(n, x + k), fromX)), scale);
+    c.x[kVectors + v] = hn::IfThenElse(inside, dx, far);
+    c.y[kVectors + v] = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Load(n, y + k), fromY)), scale);
+    for (int a = 0; a < kValues; ++a) c.value[a][kVectors + v] = hn::Load(f, value[a] + k);
+  }
+}
+
 // Any other cell: runs of any number and length, seams, candidates behind walls. One particle; vector(dx, dy, m, j,
 // live) for each vector of candidates.
 template <typename Vector>
@@ -217,25 +247,33 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
     if (++filled == kRows) finishRows(i + 1);
   };
   VF own[kValues + 1], other[kValues + 1], sums[kSums];
+  auto sweepUsual = [&](const CellRuns& cell, const UsualCell<kValues>& c, const std::uint32_t vectors) FROUDE_INLINE {
+    const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
+    for (std::uint32_t i = cell.first; i < cell.last; ++i) {
+      const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), fromX)), scale);
+      const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), fromY)), scale);
+      begun(i, own, sums);
+      HWY_UNROLL(16)
+      for (std::uint32_t v = 0; v < vectors; ++v) {
+        const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
+        const VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
+        for (int a = 0; a < kValues; ++a) other[a] = c.value[a][v];
+        add(m, dx, dy, own, other, sums);
+      }
+      done(i, sums);
+    }
+  };
   for (std::size_t k = begin; k < end; ++k) {
     const CellRuns& cell = frame.runs[k];
-    if (HWY_LIKELY(cell.usual)) {
+    if (HWY_LIKELY(cell.kind == CellRuns::Kind::Usual)) {
       UsualCell<kValues> c;
       loadUsual<kValues>(frame, cell, values, c);
-      const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
-      for (std::uint32_t i = cell.first; i < cell.last; ++i) {
-        const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), fromX)), scale);
-        const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), fromY)), scale);
-        begun(i, own, sums);
-        HWY_UNROLL(12)
-        for (std::uint32_t v = 0; v < kVectors; ++v) {
-          const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
-          const VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
-          for (int a = 0; a < kValues; ++a) other[a] = c.value[a][v];
-          add(m, dx, dy, own, other, sums);
-        }
-        done(i, sums);
-      }
+      sweepUsual(cell, c, kVectors);
+    } else if (HWY_LIKELY(cell.kind == CellRuns::Kind::Long)) {
+      UsualCell<kValues> c;
+      loadUsual<kValues>(frame, cell, values, c);
+      loadBeyond<kValues>(frame, cell, values, c);
+      sweepUsual(cell, c, kVectors + kPerRun);
     } else {
       Runs runs;
       collectRuns(frame, frame.cells[k], runs);
