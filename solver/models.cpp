@@ -20,11 +20,13 @@ std::span<const ModelCard> modelCards() {
        {}},
       {"pbf",
        "Position based fluid",
-       "incompressible fluid with a free surface by density constraints, free-slip walls exact for polygons",
-       "negative pressure, surface tension, friction at walls; viscosity only as an explicit laminar term",
-       {"courant * support / v_max, courant = 0.25 unless set", "0.25 sqrt(support / g)",
-        "dx sqrt(0.15 / (p / density)), p the largest pressure", "0.125 dx^2 / viscosity",
-        "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+       "incompressible fluid with a free surface by density constraints, walls exact for polygons, free-slip or "
+       "no-slip",
+       "negative pressure, surface tension; viscosity only as an explicit laminar term, which is also what sticks to "
+       "no-slip walls",
+       {"courant * support / v_max, courant = 0.6 unless set", "0.25 sqrt(support / g)",
+        "dx sqrt(0.15 / (p / density)), p twice the typical pressure sum p^2 / sum p; 0.3 for the largest",
+        "0.125 dx^2 / viscosity", "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"at most 30 sweeps a step: hit hard, a deep fluid is compressed by several per cent for some steps",
         "the pressure at a single place is up to 3 % of the largest off, by the arrangement of the particles around it",
         "no tension: an accelerated stream breaks up into strands of particles"},

@@ -16,7 +16,8 @@ Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band
                          def.friction,
                          def.restitution,
                          bodies.moves(i) ? static_cast<int>(moving_.size()) : -1,
-                         {def.group, def.collidesWith}});
+                         {def.group, def.collidesWith},
+                         def.slip.value_or(domain.slip)});
     const Transform pose = bodies.motion(i).transform();
     if (bodies.moves(i)) {
       moving_.push_back({static_cast<int>(i),
@@ -30,6 +31,8 @@ Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band
       placed.push_back({def.shape.get(), pose, static_cast<std::int32_t>(i), def.group, def.collidesWith});
     }
   }
+  anySticks_ = sticks(-1);
+  for (std::size_t i = 0; i < bodies.size(); ++i) anySticks_ = anySticks_ || sticks(static_cast<int>(i));
   DomainWalls walls{domain.box, domain.closed};
   if (domain.periodicX) walls.closed[0] = walls.closed[1] = false;
   if (domain.periodicY) walls.closed[2] = walls.closed[3] = false;
@@ -256,6 +259,11 @@ Vec2 Obstacles::velocityAt(int body, const Vec2& x) const {
   if (k < 0) return {0.0, 0.0};
   const Moving& m = moving_[static_cast<std::size_t>(k)];
   return m.motion.velocity + cross(m.motion.spin, x - m.end.position);
+}
+
+Vec2 Obstacles::surfaceVelocityAt(int body, const Vec2& x, const Vec2& normal) const {
+  if (body < 0) return {0.0, 0.0};
+  return velocityAt(body, x) + surfaces_[static_cast<std::size_t>(body)].velocity * leftNormal(normal);
 }
 
 std::size_t Obstacles::memoryBytes() const {

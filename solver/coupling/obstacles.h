@@ -63,6 +63,16 @@ class Obstacles {
   /// Velocity of a body's material (its belt left out) at x during the sub-step; 0 for the domain (−1) [m/s].
   Vec2 velocityAt(int body, const Vec2& x) const;
 
+  /// Velocity of the surface that a particle at x feels, `normal` pointing from the surface to it: the material's and
+  /// the belt's [m/s].
+  Vec2 surfaceVelocityAt(int body, const Vec2& x, const Vec2& normal) const;
+  /// Do fluids stick to the body's surface (−1: to the domain's walls)?
+  bool sticks(int body) const {
+    return body < 0 ? domain_.slip == Slip::NoSlip : surfaces_[static_cast<std::size_t>(body)].slip == Slip::NoSlip;
+  }
+  /// Is there any surface to which fluids stick?
+  bool anySticks() const { return anySticks_; }
+
   bool anyMoving() const { return !moving_.empty(); }
   const DomainDef& domain() const { return domain_; }
   std::size_t memoryBytes() const;
@@ -93,11 +103,13 @@ class Obstacles {
     double velocity, friction, restitution;
     int moving;  // index into moving_, −1 for a fixed body
     CollisionFilter filter;
+    Slip slip;
   };
   void touch(ObstacleHit& hit, int body) const;
 
   std::vector<Surface> surfaces_;  // by body index
   std::vector<Moving> moving_;
+  bool anySticks_ = false;
   double dt_ = 0.0;
   double reach_ = 0.0;
   // Coarse cells over the domain; each lists the moving bodies whose swept box, grown by the reach, touches it.

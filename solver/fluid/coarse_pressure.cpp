@@ -8,6 +8,7 @@ namespace {
 constexpr float kFull = 0.85f;      // mean density of a full cell
 constexpr double kReduction = 0.1;  // of the residual
 constexpr int kMaxIterations = 200;
+constexpr double kLeastCurvature = 1e-9;  // of a direction: rounding beside the smoothest mode of 10,000 cells in a row
 constexpr std::int32_t kStepX[4] = {1, -1, 0, 0};
 constexpr std::int32_t kStepY[4] = {0, 0, 1, -1};
 
@@ -114,7 +115,8 @@ int CoarsePressure::solve(const CellGrid& grid, std::span<const double> x, std::
   for (; iteration < kMaxIterations && energy > enough && energy > 0.0; ++iteration) {
     apply(direction_, product_);
     const double curvature = dot(direction_, product_);
-    if (!(curvature > 0.0)) break;  // a pocket without a free surface: constants are free
+    // A pocket without a free surface: constants are free, and what they should carry has no solution.
+    if (!(curvature > kLeastCurvature * dot(direction_, direction_))) break;
     const double step = energy / curvature;
     parallelFor(n, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {

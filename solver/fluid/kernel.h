@@ -19,6 +19,9 @@ inline constexpr double kLatticeSum = 1.0169;
 /// share of a pressure gradient that the particles feel, and so what a multiplier counts as pressure (square lattice:
 /// 0.977).
 inline constexpr double kGradientMoment = 0.935;
+/// The same, mean of both lattices: the share of a velocity's Laplacian that Morris' term over particles feels. A
+/// wall's term is an integral and feels all of it.
+inline constexpr double kLaplacianMoment = 0.956;
 /// Factor of the shape m⁴ (1 + kTail m⁶) for particles.
 inline constexpr double kNorm = 1.0 / (kPi * kLatticeSum);
 inline constexpr double kTail = 0.55;

@@ -23,9 +23,9 @@ struct HiddenPairs {
 /// The least diagonal: a particle without neighbours has none.
 inline constexpr float kSmallestDiagonal = 0.05f;
 
-/// An occupied cell: its particles and where their candidates are. Usual is a cell with at most three runs of at most 16
-/// candidates, none of them beyond a seam or hidden by a wall; Long is one whose runs have up to 16 more between them.
-/// The runs of any other cell are looked up in each loop.
+/// An occupied cell: its particles and where their candidates are. Usual is a cell with at most three runs of at most
+/// 16 candidates, none of them beyond a seam or hidden by a wall; Long is one whose runs have up to 16 more between
+/// them. The runs of any other cell are looked up in each loop.
 struct CellRuns {
   static constexpr std::uint32_t kUsual = 16;
   enum class Kind : std::uint16_t { Usual, Long, Other };

@@ -105,6 +105,7 @@ void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger&
   solveDensity(context, pool, stats);               // lines 8–19
   finishPositions(context, pool, impulses, stats);  // lines 20–21, 23
   smoothVelocities(context, pool);                  // line 22
+  dragAlongWalls(context, pool, impulses);
 }
 
 void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
@@ -241,12 +242,13 @@ void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats
                               static_cast<float>(kRelaxation)};
   double excess = runDensity(context, density.data(), diagonal_.data(), update);
   int sweep = 0;
-  if (fresh) {
+  const auto count = static_cast<double>(pool.size());
+  if (fresh && excess / count > kTolerance) {
     liftFromCoarse(context, pool);
     runDisplacement(context, change_.data(), kappa_.data());
     excess = runDensity(context, density.data(), nullptr, update);
   }
-  for (; !solved(excess / static_cast<double>(pool.size()), sweep, fresh); ++sweep) {
+  for (; !solved(excess / count, sweep, fresh); ++sweep) {
     runDisplacement(context, change_.data(), kappa_.data());
     excess = runDensity(context, density.data(), nullptr, update);
   }
@@ -419,10 +421,11 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
   });
   const PairFrame pairs = frame();
   const double stiffness = pressureUnit(context.dt) * largestPressure_;
+  const double viscousUnit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
   const ViscosityLoop loop{velocityX_.data(),
                            velocityY_.data(),
                            kSmoothing * static_cast<float>(std::sqrt(stiffness)),
-                           static_cast<float>(2.0 * def_.viscosity * context.dt / (dx_ * dx_)),
+                           static_cast<float>(viscousUnit / kernel::kLaplacianMoment),
                            smoothX_.data(),
                            smoothY_.data()};
   const PairLoops& loops = pairLoops(context.simd);
@@ -433,6 +436,35 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
       vx[i] += static_cast<double>(smoothX_[i]);
       vy[i] += static_cast<double>(smoothY_[i]);
     }
+  });
+}
+
+// Implicit, v = (v + Σ c v_wall)/(1 + Σ c): a particle on a wall moves with it, on any step.
+void Pbf::dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const {
+  if (def_.viscosity == 0.0 || !context.obstacles.anySticks()) return;
+  const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  walls_.forEachParticle([&](std::span<const WallLink> links) {
+    const std::uint32_t i = links.front().particle;
+    const Vec2 at(x[i], y[i]);
+    auto wall = [&](const WallLink& link) {
+      return context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY));
+    };
+    double total = 0.0;
+    Vec2 pull(vx[i], vy[i]);
+    for (const WallLink& link : links) {
+      const double c = unit * static_cast<double>(link.drag);
+      total += c;
+      if (c > 0.0) pull += c * wall(link);
+    }
+    if (total == 0.0) return;
+    const Vec2 v = pull / (1.0 + total);
+    for (const WallLink& link : links) {
+      const double c = unit * static_cast<double>(link.drag);
+      if (c > 0.0) impulses.add(link.owner, at, particleMass() * c * (v - wall(link)), wall(link));
+    }
+    vx[i] = v.x();
+    vy[i] = v.y();
   });
 }
 

@@ -38,6 +38,7 @@ class Pbf final : public FluidModel {
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void smoothVelocities(const StepContext& context, ParticlePool& pool);
+  void dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const;
 
   CollisionFilter filter() const { return {def_.group, def_.collidesWith}; }
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;

@@ -13,8 +13,9 @@ namespace {
 // the wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start
 // over-dense.
 constexpr double kRecession = 0.0856018;
-constexpr float kMostFilled = 0.6f;    // a particle with more wall around it has no one wall to go along
-constexpr double kLongestMiter = 4.0;  // of the recession, at needles
+constexpr float kMostFilled = 0.6f;        // a particle with more wall around it has no one wall to go along
+constexpr double kSmallestDistance = 0.1;  // [dx] to a wall that a particle sticks to; it moves with it then
+constexpr double kLongestMiter = 4.0;      // of the recession, at needles
 
 Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized(); }
 
@@ -104,6 +105,9 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   bool facesAway = false;
   for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
   if (facesAway) findHidden(edges, grid, x, y, i, block);
+  std::array<WallEdge, kMaxWallEdges> whole;
+  const bool drag = obstacles.anySticks();
+  if (drag) std::copy_n(buffer.begin(), n, whole.begin());
   const std::size_t front = recede({buffer.data(), n});
   std::array<WallShare, kMaxWallEdges> shares;
   const std::size_t owners = integrateWalls({buffer.data(), front}, shares);
@@ -112,11 +116,42 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
     lambda_[i] += static_cast<float>(share.lambda);
     gradientX_[i] += static_cast<float>(share.gradient.x());
     gradientY_[i] += static_cast<float>(share.gradient.y());
-    block.links.push_back({i, share.owner, static_cast<float>(share.lambda), static_cast<float>(share.gradient.x()),
-                           static_cast<float>(share.gradient.y())});
+    WallLink link{i,
+                  share.owner,
+                  static_cast<float>(share.lambda),
+                  static_cast<float>(share.gradient.x()),
+                  static_cast<float>(share.gradient.y()),
+                  0.0f,
+                  0.0f,
+                  0.0f};
+    if (drag && obstacles.sticks(share.owner)) findDrag({whole.data(), n}, link);
+    block.links.push_back(link);
   }
   const float steepness = gradientX_[i] * gradientX_[i] + gradientY_[i] * gradientY_[i];
   if (lambda_[i] < kMostFilled && steepness > 1e-6f) tangent_[i] = lambda_[i] / ((1.0f - lambda_[i]) * steepness);
+}
+
+// Behind the wall the velocity goes on linearly, v(x') − v = (v_wall − v)·s/d with s the way along the normal and d the
+// distance (Morris et al., J. Comput. Phys. 136 (1997), eq. 24). Morris' viscous term 2ν ∫ (v(x') − v)(−F) over the
+// wall is then 2ν (v_wall − v) |∇λ|/d, because F·(x − x') = ∇W.
+void WallLayer::findDrag(std::span<const WallEdge> edges, WallLink& link) {
+  double nearest = kInfinity;
+  Vec2 towards(0.0, 0.0);  // from the wall to the particle, which is the origin
+  for (const WallEdge& e : edges) {
+    if (e.owner != link.owner || cross(e.a, e.b) >= 0.0) continue;  // looks away
+    const Vec2 along = e.b - e.a;
+    const double part = std::clamp(-e.a.dot(along) / along.squaredNorm(), 0.0, 1.0);
+    const Vec2 point = e.a + part * along;
+    if (point.squaredNorm() >= nearest) continue;
+    nearest = point.squaredNorm();
+    towards = -point;
+  }
+  const double distance = std::sqrt(nearest);
+  if (!(distance < kInfinity)) return;
+  const Vec2 normal = distance > 0.0 ? Vec2(towards / distance) : Vec2(0.0, 0.0);
+  link.normalX = static_cast<float>(normal.x());
+  link.normalY = static_cast<float>(normal.y());
+  link.drag = std::hypot(link.gradientX, link.gradientY) / static_cast<float>(std::max(distance, kSmallestDistance));
 }
 
 void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,

@@ -18,6 +18,8 @@ struct WallLink {
   std::int32_t owner;  // body index, −1: the domain
   float lambda;
   float gradientX, gradientY;  // [1/dx]
+  float normalX, normalY;      // of a surface that fluids stick to, towards the particle; else 0
+  float drag;                  // |gradient|/distance of such a surface [1/dx²]; else 0
 };
 
 /// Built once a sub-step at the predicted positions; memory is reused from step to step.
@@ -46,6 +48,17 @@ class WallLayer {
       for (const WallLink& link : blocks_[b].links) visit(link);
     }
   }
+  /// visit(std::span<const WallLink>) for each particle that has any, in increasing order.
+  template <typename Visit>
+  void forEachParticle(Visit&& visit) const {
+    for (std::size_t b = 0; b < used_; ++b) {
+      const std::span<const WallLink> links = blocks_[b].links.span();
+      for (std::size_t begin = 0, end = 0; begin < links.size(); begin = end) {
+        while (end < links.size() && links[end].particle == links[begin].particle) ++end;
+        visit(links.subspan(begin, end - begin));
+      }
+    }
+  }
   std::size_t memoryBytes() const;
 
  private:
@@ -55,6 +68,7 @@ class WallLayer {
   };
   void integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y,
                  std::uint32_t i, Block& block);
+  static void findDrag(std::span<const WallEdge> edges, WallLink& link);
   void findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
                   std::span<const double> y, std::uint32_t i, Block& block);
 

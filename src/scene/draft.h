@@ -27,7 +27,7 @@ struct Draft {
   std::vector<Place> bodyPlaces;       // of each body (copies share one), for warnings
   std::vector<std::string> bodyPaths;  // "body.gate"
   std::vector<Place> emitterPlaces;
-  Place timeStepPlace;
+  Place timeStepPlace, slipPlace;
   std::optional<Place> spacingPlace;  // empty: the default
   /// Shapes by the bits of their vertices: a resolved scene writes each copy out, and equal shapes are to be one again.
   std::map<std::string, std::shared_ptr<const Polygon>> shapes;

@@ -45,9 +45,24 @@ void judgeConveyors(Draft& draft) {
   std::set<const Polygon*> said;  // copies share a shape and are said once
   for (std::size_t i = 0; i < draft.scene.world.bodies.size(); ++i) {
     const BodyDef& body = draft.scene.world.bodies[i];
-    if (body.surfaceVelocity == 0.0 || !said.insert(body.shape.get()).second) continue;
+    const bool sticks = body.slip.value_or(draft.scene.world.domain.slip) == Slip::NoSlip;
+    if (body.surfaceVelocity == 0.0 || sticks || !said.insert(body.shape.get()).second) continue;
     draft.warn(draft.bodyPlaces[i], draft.bodyPaths[i] + ".surface_velocity",
-               "moves bullets only: walls are free-slip for fluids in this version");
+               "moves bullets only: this body is free-slip for the fluid; slip = \"no\" lets it take the fluid along");
+  }
+}
+
+/// What sticks to a wall feels it by viscosity alone.
+void judgeSlip(Draft& draft) {
+  const WorldDef& world = draft.scene.world;
+  if (world.fluid->viscosity > 0.0) return;
+  if (world.domain.slip == Slip::NoSlip) {
+    draft.warn(draft.slipPlace, "domain.wall_slip", "\"no\" does nothing without fluid.viscosity");
+  }
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    if (world.bodies[i].slip != Slip::NoSlip) continue;
+    draft.warn(draft.bodyPlaces[i], draft.bodyPaths[i] + ".slip", "\"no\" does nothing without fluid.viscosity");
+    return;
   }
 }
 
@@ -173,6 +188,7 @@ void judge(Draft& draft) {
   judgeCuts(draft);
   if (!draft.scene.world.fluid) return;
   judgeConveyors(draft);
+  judgeSlip(draft);
   judgeThickness(draft);
   GapJudge(draft).judge();
 }

@@ -74,8 +74,7 @@ void readSurface(TableReader& body, BodyDef& def) {
   def.friction = body.number("friction", Range::notNegative(1e3), 0.3);
   def.restitution = body.number("restitution", Range::between(0.0, 1.0), 0.1);
   if (body.has("slip")) {
-    body.word("slip", {"free"}, std::nullopt, {"no"});
-    def.slip = Slip::Free;
+    def.slip = body.word("slip", {"free", "no"}, std::nullopt) == "no" ? Slip::NoSlip : Slip::Free;
   }
   def.surfaceVelocity = body.number("surface_velocity", Range::between(-1e6, 1e6), 0.0);
   constexpr std::int64_t kAll = 0xFFFFFFFF;

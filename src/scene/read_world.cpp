@@ -67,8 +67,8 @@ void readDomain(TableReader& root, Draft& draft) {
     const bool all = domain.boolean("walls", true);
     for (std::size_t i = 0; i < 4; ++i) def.closed[i] = all && !open[i];
   }
-  domain.word("wall_slip", {"free"}, "free", {"no"});
-  def.slip = Slip::Free;
+  def.slip = domain.word("wall_slip", {"free", "no"}, "free") == "no" ? Slip::NoSlip : Slip::Free;
+  draft.slipPlace = domain.place("wall_slip");
   root.resolved().set("domain", domain.resolved());
 }
 

@@ -90,6 +90,7 @@ TEST(SceneLoad, walls_and_periodic_sides) {
   EXPECT_EQ(closed("walls = []\n"), (std::array<bool, 4>{false, false, false, false}));
   EXPECT_TRUE(loadText(kHead + "periodic = [\"y\"]\n").world.domain.periodicY);
   EXPECT_EQ(loadText(kHead + "wall_slip = \"free\"\n").world.domain.slip, Slip::Free);
+  EXPECT_EQ(loadText(kHead + "wall_slip = \"no\"\n").world.domain.slip, Slip::NoSlip);
 }
 
 TEST(SceneLoad, gravity_is_constant_or_a_field) {

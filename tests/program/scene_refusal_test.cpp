@@ -86,7 +86,6 @@ TEST(SceneRefusal, the_domain) {
       {kHead + "walls = [\"left\", \"left\"]\n", "5:18: domain.walls: ", "twice"},
       {kHead + "walls = \"all\"\n", "5:9: domain.walls: is a string", "true, false or a list"},
       {kHead + "wall_slip = \"none\"\n", "5:13: domain.wall_slip: is \"none\"", "\"free\""},
-      {kHead + "wall_slip = \"no\"\n", "5:13: domain.wall_slip: \"no\" is not in this version", "free"},
       {kHead + "periodic = [\"z\"]\n", "5:13: domain.periodic: ", "\"x\" or \"y\""},
       {kHead + "periodic = [\"x\"]\nwalls = [\"left\"]\n", "6:9: domain.walls: \"left\" is a periodic side", ""},
   });
@@ -206,7 +205,6 @@ TEST(SceneRefusal, bodies) {
       {body + "restitution = 1.5\n", "8:15: body.gate.restitution: is 1.5", "at most 1"},
       {body + "origin = \"middle\"\n", "8:10: body.gate.origin: ", "\"centroid\""},
       {body + "slip = \"yes\"\n", "8:8: body.gate.slip: ", "\"free\""},
-      {body + "slip = \"no\"\n", "8:8: body.gate.slip: \"no\" is not in this version", "free"},
       {body + "group = -1\n", "8:9: body.gate.group: is -1", ""},
       {body + "spin = 1.0\n", "8:8: body.gate.spin: a fixed body does not move", "scripted"},
       {body + "script = [{ until = 1 }]\n", "8:10: body.gate.script: a fixed body does not move", ""},
