@@ -69,6 +69,10 @@ class Polygon {
   /// True inside and exactly on the boundary. Exact. Cost: O(edges).
   bool contains(const Vec2& p) const;
 
+  /// The polygon whose `vertices()` and `ringStarts()` these were, bit by bit; nothing is checked again. For saved
+  /// states.
+  static Polygon restored(std::vector<Vec2> vertices, std::vector<std::uint32_t> ringStarts);
+
   /// The same polygon in another frame. Vertices are rounded to the nearest double there; nothing is checked again.
   Polygon transformed(const Transform& transform) const;
 
