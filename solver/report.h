@@ -52,6 +52,7 @@ struct Ledger {
   std::uint64_t leaks = 0, crushed = 0, wallHits = 0, quarantined = 0;
   std::uint64_t retired = 0;  // left the domain
   std::uint64_t sunk = 0, expired = 0, emitted = 0, recycled = 0, refused = 0;
+  std::uint64_t added = 0, killed = 0;  // by calls between steps, after the first one
   std::array<std::uint64_t, static_cast<std::size_t>(StepLimit::kCount)> limits{};
   double maxDensityError = 0.0;   // largest compression over particles and steps
   double densityErrorTime = 0.0;  // ∫ mean compression dt [s]

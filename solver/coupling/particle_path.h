@@ -31,6 +31,8 @@ struct PathResult {
     Vec2 change{0, 0};           // of the particle's velocity [m/s]
     Vec2 surfaceVelocity{0, 0};  // of the obstacle there [m/s]
     double time = 0.0;           // fraction of the sub-step at which it happened
+    Vec2 normal{0, 0};           // outward from the obstacle
+    double approach = 0.0;       // of the particle towards the surface before [m/s], ≥ 0
   };
   std::array<Impulse, kMaxBounces + 1> impulses;  // the first `contacts`
 };
