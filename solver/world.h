@@ -126,7 +126,8 @@ class World {
   /// not accept let it through. Valid within the domain; along periodic sides bodies are met up to one period away.
   /// Cost: cells of the world field that are crossed, and a box test for each moving body.
   RayHit castRay(const Vec2& from, const Vec2& to, const CollisionFilter& filter = kEverything) const;
-  /// The body in which the point lies deepest; null if it lies in none. Cost: one distance query.
+  /// A body that holds the point, the nearest boundary's if there are several; null if none does. Cost: one distance
+  /// query; far inside a body a search over all.
   BodyId bodyAt(const Vec2& point, const CollisionFilter& filter = kEverything) const;
   /// Bodies that share a point with the area, by index; the vector's memory is reused. Cost: edges of all bodies.
   void findBodies(const Area& area, std::vector<BodyId>& found, const CollisionFilter& filter = kEverything) const;

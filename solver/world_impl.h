@@ -46,7 +46,7 @@ struct World::Impl {
   // The caller's force (world_force.cpp).
   void feelForce();
   void pushByForce(double dt, StepStats& stats);
-  void pushBulletsAgain(double dt, StepStats& stats);
+  void finishForce(double dt, StepStats& stats);
   double accelerationScale() const { return gravityScale + forceScale; }
 
   // What callers change between steps (world_edit.cpp).

@@ -143,7 +143,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
     ballistic->advance(context, *bullets, impulses, stats);
     events.finishSpecies();
   }
-  pushBulletsAgain(dt, stats);
+  finishForce(dt, stats);
   publishBodies(dt);
   bodies.finishStep(dt);
   time += dt;
