@@ -62,11 +62,13 @@ void World::Impl::crushUnder(std::size_t body) {
     const auto x = pool.x(), y = pool.y();
     parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const Vec2 p = pose.toLocal({x[i], y[i]});
-        if (!local.contains(p)) continue;
-        if (shape.shape->contains(p) || boundaryDistance(*shape.shape, p) < radius) {
-          pool.kill(static_cast<std::uint32_t>(i));
-        }
+        visitImages(def.domain, [&](const Vec2& shift) {
+          const Vec2 p = pose.toLocal(Vec2(x[i], y[i]) + shift);
+          if (!local.contains(p)) return false;
+          const bool under = shape.shape->contains(p) || boundaryDistance(*shape.shape, p) < radius;
+          if (under) pool.kill(static_cast<std::uint32_t>(i));
+          return under;
+        });
       }
     });
     dropMarked(pool, ledger.crushed);

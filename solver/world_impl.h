@@ -27,6 +27,18 @@ struct Balance {
   double energy() const { return kinetic + potential; }
 };
 
+/// visit(shift) for a point and its copies one period away along periodic axes; stops where visit returns true.
+template <typename Visit>
+void visitImages(const DomainDef& domain, Visit&& visit) {
+  const Vec2 period = domain.box.size();
+  const int nx = domain.periodicX ? 1 : 0, ny = domain.periodicY ? 1 : 0;
+  for (int i = -nx; i <= nx; ++i) {
+    for (int j = -ny; j <= ny; ++j) {
+      if (visit(Vec2(i * period.x(), j * period.y()))) return;
+    }
+  }
+}
+
 struct World::Impl {
   explicit Impl(const WorldDef& definition);
 

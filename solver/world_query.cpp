@@ -45,23 +45,22 @@ void World::findBodies(const Area& area, std::vector<BodyId>& found, const Colli
 
 BodyId World::bodyAt(const Vec2& point, const CollisionFilter& filter) const {
   const Obstacles::Distance nearest = impl_->solids().distance(point, filter);
-  if (nearest.distance > 0.0) return {};
-  if (nearest.body >= 0) return impl_->bodies.id(static_cast<std::size_t>(nearest.body));
-  // Deeper than the fields are exact, or beyond a wall of the domain.
   const DomainDef& domain = impl_->def.domain;
-  const Vec2 period = domain.box.size();
-  const int nx = domain.periodicX ? 1 : 0, ny = domain.periodicY ? 1 : 0;
-  for (std::size_t i = 0; i < bodyCount(); ++i) {
+  // A body that reaches across a periodic side is told near that side only by the fields.
+  if (nearest.distance > 0.0 && !domain.periodicX && !domain.periodicY) return {};
+  if (nearest.distance <= 0.0 && nearest.body >= 0) return impl_->bodies.id(static_cast<std::size_t>(nearest.body));
+  // Deeper than the fields are exact, or beyond a wall of the domain.
+  BodyId holder;
+  for (std::size_t i = 0; i < bodyCount() && holder.isNull(); ++i) {
     const BodyDef& def = impl_->bodies.definition(i);
     if (!filter.accepts(def.group, def.collidesWith)) continue;
-    for (int k = -nx; k <= nx; ++k) {
-      for (int l = -ny; l <= ny; ++l) {
-        const Vec2 image = point + Vec2(k * period.x(), l * period.y());
-        if (def.shape->contains(impl_->bodyStates[i].transform.toLocal(image))) return impl_->bodies.id(i);
-      }
-    }
+    visitImages(domain, [&](const Vec2& shift) {
+      if (!def.shape->contains(impl_->bodyStates[i].transform.toLocal(point + shift))) return false;
+      holder = impl_->bodies.id(i);
+      return true;
+    });
   }
-  return {};
+  return holder;
 }
 
 bool World::insideSolid(const Vec2& point, const CollisionFilter& filter) const {

@@ -211,6 +211,22 @@ TEST(WorldEdit, what_stands_where_a_body_is_put_is_crushed_unless_it_does_not_co
   EXPECT_EQ(world.ledger().crushed, 3u);
 }
 
+TEST(WorldEdit, a_body_across_a_periodic_side_crushes_and_holds_on_both_ends) {
+  WorldDef def = bulletWorld();
+  def.domain.periodicX = true;
+  World world(def);
+  shoot(world, {0.1, 1.0}, {0.0, 0.0});
+  shoot(world, {3.9, 1.0}, {0.0, 0.0});
+  shoot(world, {2.0, 1.0}, {0.0, 0.0});
+  world.step(0.01);
+  const BodyId id = world.createBody(body("block", Polygon::box({{-0.3, -0.3}, {0.3, 0.3}}), {4.0, 1.0}));
+  EXPECT_EQ(world.ledger().crushed, 2u);
+  EXPECT_EQ(world.bullets()->size(), 1u);
+  EXPECT_EQ(world.bodyAt({3.8, 1.0}), id);
+  EXPECT_EQ(world.bodyAt({0.1, 1.0}), id);
+  EXPECT_TRUE(world.bodyAt({0.5, 1.0}).isNull());
+}
+
 TEST(WorldEdit, particles_added_and_killed_between_steps_are_booked_as_work_from_outside) {
   World world = busyWorld();
   for (int k = 0; k < 5; ++k) ASSERT_TRUE(world.step(0.01).ok());
