@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/transform.h>
 #include <froude/base/types.h>
@@ -12,7 +13,7 @@
 namespace froude {
 
 /// A polygon that cannot be repaired; `what()` names vertices by index and coordinates.
-class PolygonError : public Error {
+class FROUDE_API PolygonError : public Error {
  public:
   enum class Reason {
     TooFewVertices,  ///< fewer than three different vertices in a ring
@@ -33,7 +34,7 @@ class PolygonError : public Error {
 /// Outer ring counter-clockwise, holes clockwise, so that the solid is on the left of every edge. Rings are closed
 /// implicitly. Edge i runs from vertex i to its successor in the ring, so edges and vertices share their numbers.
 /// Immutable.
-class Polygon {
+class FROUDE_API Polygon {
  public:
   /// Checks and repairs. Repaired, with a line in `notes` for each: wrong winding, a repeated closing or neighbouring
   /// vertex, a vertex in the middle of a straight run. All decisions are exact. Coordinates [m]. Throws PolygonError.

@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include <froude/base/api.h>
 #include <froude/fields/polygon.h>
 #include <froude/fields/world_field.h>
 #include <froude/solver/definitions.h>
@@ -17,7 +18,7 @@ struct Disc {
 
 /// A part of the plane in world coordinates [m], boundary included: a box, a disc, or a polygon, which must outlive the
 /// area. It is not continued across periodic sides.
-class Area {
+class FROUDE_API Area {
  public:
   Area(const Box& box) : shape_(box) {}               // NOLINT(google-explicit-constructor): reads as what it is
   Area(const Disc& disc) : shape_(disc) {}            // NOLINT(google-explicit-constructor)

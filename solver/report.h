@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <froude/base/api.h>
 #include <froude/base/types.h>
 
 namespace froude {
@@ -24,10 +25,10 @@ enum class StepLimit : int {
   Undone,        // halved after a bad step
   kCount
 };
-std::string_view name(StepLimit limit);
+FROUDE_API std::string_view name(StepLimit limit);
 
 enum class Trouble : int { None, NonFinite, Displacement, Compression, EnergyGain };
-std::string_view name(Trouble trouble);
+FROUDE_API std::string_view name(Trouble trouble);
 
 /// One accepted sub-step, or the reason why none was.
 struct StepReport {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/archive.h>
 #include <froude/base/transform.h>
 #include <froude/particles/pool.h>
@@ -38,12 +39,12 @@ struct Totals {
 };
 
 /// Bytes that a world of this definition and so many particles will take; for predictions and refusals.
-std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets);
+FROUDE_API std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets);
 
 /// The world. Not copyable; all access from one thread at a time. Construction and all that changes the world between
 /// steps throw Error and then leave it as it was; steps never throw. Loops run in the TBB arena of the caller; nothing
 /// global is set. Vectors are in world coordinates, angles in rad.
-class World {
+class FROUDE_API World {
  public:
   explicit World(const WorldDef& def);
   ~World();
