@@ -19,6 +19,15 @@ double reachOf(const WorldDef& def) {
   return std::max(fluid, bullet) > 0.0 ? std::max(fluid, bullet) : domain;
 }
 
+// A particle must not be its own neighbour's neighbour twice; found in a step, this would be an exception there.
+void checkPeriod(const WorldDef& def) {
+  const Vec2 size = def.domain.box.size();
+  const double least = 8.0 * def.fluid->spacing;
+  if ((def.domain.periodicX && size.x() < least) || (def.domain.periodicY && size.y() < least)) {
+    throw Error("a fluid's domain must be at least 8 spacings long along a periodic axis");
+  }
+}
+
 }  // namespace
 
 World::Impl::Impl(const WorldDef& definition)
@@ -26,10 +35,12 @@ World::Impl::Impl(const WorldDef& definition)
   if (def.domain.box.empty() || !(def.domain.box.size().minCoeff() > 0.0)) {
     throw Error("domain.box is empty; give [xmin, ymin, xmax, ymax] with min < max");
   }
+  if (!def.gravity.allFinite()) throw Error("gravity must be finite");
   if (def.timeStep && !(*def.timeStep > 0.0)) throw Error("timeStep must be a positive number of seconds");
   if (def.fluid) {
     if (!(def.fluid->spacing > 0.0)) throw Error("fluid spacing must be a positive length");
     if (!(def.fluid->density > 0.0)) throw Error("fluid density must be positive");
+    checkPeriod(def);
     fluid = makePool("fluid");
     fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);
     fluidExpires = fluid->addColumn<double>("expires", ColumnKind::State);
@@ -51,7 +62,10 @@ World::Impl::Impl(const WorldDef& definition)
     emitters.emplace_back(e, def.fluid ? def.fluid->spacing : 0.0, def.seed, k);
     anyLifetime = anyLifetime || std::isfinite(e.lifetime);
   }
-  for (const SinkDef& s : def.sinks) sinks.add(*s.shape);
+  for (std::size_t k = 0; k < def.sinks.size(); ++k) {
+    if (def.sinks[k].shape == nullptr) throw Error("sink " + std::to_string(k) + " has no shape");
+    sinks.add(*def.sinks[k].shape);
+  }
   obstacles = std::make_unique<Obstacles>(def.domain, bodies, reachOf(def));
   bodyStates.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -144,6 +144,25 @@ TEST(WorldEdit, a_definition_that_cannot_work_changes_nothing) {
   EXPECT_EQ(world.stateHash(), before);
 }
 
+TEST(WorldEdit, definitions_that_would_break_a_step_are_refused_before_it) {
+  const WorldDef good = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.05);
+  WorldDef bad = good;
+  bad.sinks.push_back({});
+  EXPECT_THROW(World{bad}, Error);
+  bad = good;
+  bad.gravity.x() = kInfinity;
+  EXPECT_THROW(World{bad}, Error);
+  bad = good;
+  bad.domain.periodicX = true;
+  bad.fluid->spacing = 0.13;
+  EXPECT_THROW(World{bad}, Error);
+  bad.fluid->spacing = 0.125;
+  World narrow(bad);
+  fill(narrow, {{0.0, 0.0}, {1.0, 0.5}}, 0.125);
+  EXPECT_TRUE(narrow.step(0.01).ok());
+  EXPECT_EQ(narrow.step(kInfinity).substeps + narrow.step(std::nan("")).substeps + narrow.step(-1.0).substeps, 0);
+}
+
 TEST(WorldEdit, a_body_by_call_meets_particles_like_one_of_the_definition) {
   for (const bool moving : {false, true}) {
     const BodyDef wall =
@@ -209,6 +228,30 @@ TEST(WorldEdit, what_stands_where_a_body_is_put_is_crushed_unless_it_does_not_co
   world.createBody(block);
   EXPECT_EQ(world.bullets()->size(), 1u);
   EXPECT_EQ(world.ledger().crushed, 3u);
+}
+
+TEST(WorldEdit, a_fluid_falls_through_what_it_does_not_collide_with_and_rests_on_what_it_does) {
+  WorldDef def = fluidWorld({{0.0, 0.0}, {0.4, 1.0}}, 0.02);
+  def.fluid->group = 4;
+  World world(def);
+  BodyDef shelf = body("shelf", Polygon::box({{-0.2, -0.02}, {0.2, 0.02}}), {0.2, 0.5});
+  shelf.collidesWith = ~4u;
+  world.createBody(shelf);
+  shelf.position.y() = 0.2;
+  shelf.collidesWith = 4;
+  const BodyId stops = world.createBody(shelf);
+  fill(world, {{0.1, 0.44}, {0.3, 0.6}}, 0.02);
+  for (int k = 0; k < 60; ++k) ASSERT_TRUE(world.step(0.01).ok());
+  const ParticlePool& pool = *std::as_const(world).fluid();
+  EXPECT_EQ(pool.size(), 80u);
+  std::size_t low = 0;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    EXPECT_GT(pool.y()[i], 0.22);
+    low += pool.y()[i] < 0.45 ? 1 : 0;
+  }
+  EXPECT_GT(low, 60u) << "all but the splash";
+  EXPECT_LT(world.body(stops).force.y(), -0.5 * world.totals().mass * 9.81);
+  EXPECT_EQ(world.ledger().leaks + world.ledger().crushed, 0u);
 }
 
 TEST(WorldEdit, a_body_across_a_periodic_side_crushes_and_holds_on_both_ends) {

@@ -233,6 +233,18 @@ TEST(WorldEvents, are_the_same_on_any_number_of_threads_and_change_no_bit) {
   }
 }
 
+TEST(WorldEvents, a_step_that_was_undone_tells_nothing) {
+  WorldDef def = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.02);
+  def.timeStep = 0.2;  // far too long
+  World world(def);
+  fill(world, {{0.0, 0.0}, {0.4, 0.8}}, 0.02);
+  world.record({true, true, true, 0.0});
+  StepReport report;
+  for (int i = 0; i < 20 && report.ok(); ++i) report = world.substep();
+  EXPECT_FALSE(report.ok());
+  EXPECT_TRUE(world.contacts().empty());
+}
+
 TEST(WorldEvents, a_sink_tells_what_it_swallowed_and_where) {
   WorldDef def = bulletWorld();
   def.sinks.push_back({std::make_shared<const Polygon>(Polygon::box({{3.0, 0.0}, {4.0, 4.0}}))});
