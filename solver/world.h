@@ -67,7 +67,7 @@ class FROUDE_API World {
   /// polygon that the species collides with. The order of calls is part of the state. Cost: a distance query each.
   std::vector<ParticleHandle> addFluid(std::span<const Vec2> positions, std::span<const Vec2> velocities);
   std::vector<ParticleHandle> addBullets(std::span<const Vec2> positions, std::span<const Vec2> velocities);
-  /// Takes one particle away; false for a null or stale handle. Cost: one pass over the columns.
+  /// Takes one particle away, whose index the last one gets; false for a null or stale handle. Cost: O(1).
   bool kill(Species species, ParticleHandle particle);
   /// Takes away all whose centre is in the area; returns how many. Cost: one pass over the columns.
   std::size_t kill(Species species, const Area& area);

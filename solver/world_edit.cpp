@@ -182,9 +182,12 @@ void World::Impl::admitEdits() {
   present = now;
 }
 
-// Removes what is marked. Before the first step there are no accounts: what is there then is the start.
 std::size_t World::Impl::dropMarked(ParticlePool& pool, std::uint64_t& counter) {
-  const std::size_t count = pool.compact();
+  return bookRemoved(pool, pool.compact(), counter);
+}
+
+// Before the first step there are no accounts: what is there then is the start.
+std::size_t World::Impl::bookRemoved(const ParticlePool& pool, std::size_t count, std::uint64_t& counter) {
   if (count == 0) return 0;
   edited = true;
   ++version;
@@ -239,10 +242,7 @@ std::vector<ParticleHandle> World::addBullets(std::span<const Vec2> positions, s
 
 bool World::kill(Species species, ParticleHandle particle) {
   ParticlePool& pool = impl_->requirePool(species);
-  const std::optional<std::uint32_t> index = pool.indexOf(particle);
-  if (!index) return false;
-  pool.kill(*index);
-  return impl_->dropMarked(pool, impl_->ledger.killed) > 0;
+  return pool.tryRelease(particle) && impl_->bookRemoved(pool, 1, impl_->ledger.killed) > 0;
 }
 
 std::size_t World::kill(Species species, const Area& area) {

@@ -68,6 +68,7 @@ struct World::Impl {
   std::size_t requireBody(BodyId id) const;
   void crushUnder(std::size_t body);
   std::size_t dropMarked(ParticlePool& pool, std::uint64_t& counter);
+  std::size_t bookRemoved(const ParticlePool& pool, std::size_t count, std::uint64_t& counter);
   ParticlePool& requirePool(Species species) const;
   CollisionFilter filterOf(Species species) const;
   double massOf(const ParticlePool& pool) const {
