@@ -61,7 +61,7 @@ class FROUDE_API World {
   const WorldDef& definition() const;
   const Ledger& ledger() const;
 
-  // Particles ---------------------------------------------------------------------------------------------------------
+  // ---- particles
 
   /// Adds particles; returns their handles in the same order. Error for a position outside the domain or inside a
   /// polygon that the species collides with. The order of calls is part of the state. Cost: a distance query each.
@@ -91,7 +91,7 @@ class FROUDE_API World {
   /// Replaces WorldDef::force from the next sub-step on; an empty function: none. Like scripts it is not saved.
   void setForce(ForceCallback force);
 
-  // Bodies ------------------------------------------------------------------------------------------------------------
+  // ---- bodies
 
   /// Makes a body. Particles that collide with it and are where it stands have no place any more: they are retired and
   /// counted as crushed (fluids by their centre, bullets by their disc). It may overlap other bodies. Error as in the
@@ -120,8 +120,7 @@ class FROUDE_API World {
   const BodyDef& bodyDefinition(std::size_t index) const;
   const BodyDef& bodyDefinition(BodyId id) const;
 
-  // Questions: they alter nothing
-  // ---------------------------------------------------------------------------------------
+  // ---- questions: they alter nothing
 
   /// The first body, or closed side of the domain, on the straight line from → to [m], exact; bodies that `filter` does
   /// not accept let it through. Valid within the domain; along periodic sides bodies are met up to one period away.
@@ -144,8 +143,7 @@ class FROUDE_API World {
   /// Is the point inside a polygon that the filter accepts, or beyond a closed side of the domain?
   bool insideSolid(const Vec2& point, const CollisionFilter& filter = kEverything) const;
 
-  // Events of the last step() or substep()
-  // --------------------------------------------------------------------------------
+  // ---- events of the last step() or substep()
 
   /// What to record from now on; nothing unless asked. Recorded or not, the state is the same to the bit.
   void record(const EventSettings& settings);
