@@ -115,6 +115,8 @@ class FROUDE_API ParticlePool {
   /// Marks for removal by `compact`; until then the particle stays where it is and its handle is good. Marking twice is
   /// marking once. May be called from several threads for different particles.
   void kill(std::uint32_t index) { markedColumn()[index] = 1; }
+  /// Is there anything for `compact`? Cost: as there.
+  bool anyMarked() const;
   bool isMarked(std::uint32_t index) const { return column(kMarked)[index] != 0; }
   /// Removes all that is marked and keeps the order of the rest. Returns how many went. Cost: O(size) bytes read if
   /// none.

@@ -1,46 +1,13 @@
 // Mass, momentum and energy: what there is, what came and went, and what the summary says of it.
-#include <array>
-
-#include <froude/base/parallel.h>
+#include <froude/solver/particle_sums.h>
 #include <froude/solver/world_impl.h>
 
 namespace froude {
-namespace {
 
-// Sums of N terms over particles in one pass; fixed blocks, added in order.
-template <std::size_t N, typename Terms>
-std::array<double, N> sumOver(std::size_t count, Terms&& terms) {
-  std::array<double, N> total{};
-  constexpr std::size_t kMaxBlocks = 512;
-  std::size_t blockSize = kBlockSize;
-  while (blockCount(count, blockSize) > kMaxBlocks) blockSize *= 2;
-  std::array<std::array<double, N>, kMaxBlocks> partial;
-  parallelFor(count, blockSize, [&](std::size_t begin, std::size_t end) {
-    std::array<double, N> sum{};
-    for (std::size_t i = begin; i < end; ++i) terms(i, sum);
-    partial[begin / blockSize] = sum;
-  });
-  for (std::size_t b = 0; b < blockCount(count, blockSize); ++b) {
-    for (std::size_t k = 0; k < N; ++k) total[k] += partial[b][k];
-  }
-  return total;
-}
-
-double largestSpeed(const ParticlePool& pool) {
-  const auto vx = pool.vx(), vy = pool.vy();
-  return std::sqrt(parallelMax(pool.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-    double most = 0.0;
-    for (std::size_t i = begin; i < end; ++i) most = std::max(most, vx[i] * vx[i] + vy[i] * vy[i]);
-    return most;
-  }));
-}
-
-}  // namespace
-
+// From the domain's lowest point, so that it is never negative inside; none along a periodic axis.
 double World::Impl::potentialOf(const Vec2& x) const {
   if (!gravity.isConstant()) return 0.0;
   const Vec2& g = gravity.constant();
-  // From the domain's lowest point, so that it is never negative inside; none along a periodic axis.
   const Box& box = def.domain.box;
   double potential = 0.0;
   if (!def.domain.periodicX) potential -= g.x() * (x.x() - (g.x() > 0.0 ? box.max.x() : box.min.x()));
@@ -49,21 +16,18 @@ double World::Impl::potentialOf(const Vec2& x) const {
 }
 
 Totals World::Impl::totalsOf(const ParticlePool& pool, double mass) const {
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const auto sum = sumOver<5>(pool.size(), [&](std::size_t i, std::array<double, 5>& s) {
-    s[0] += 0.5 * (vx[i] * vx[i] + vy[i] * vy[i]);
-    s[1] += potentialOf({x[i], y[i]});
-    s[2] += vx[i];
-    s[3] += vy[i];
-    s[4] += x[i] * vy[i] - y[i] * vx[i];
-  });
-  return {pool.size(),
-          mass * static_cast<double>(pool.size()),
-          mass * sum[0],
-          mass * sum[1],
-          mass * Vec2(sum[2], sum[3]),
-          mass * sum[4],
-          largestSpeed(pool)};
+  const ParticleSums sums = sumParticles(pool, def.simd);
+  Totals t;
+  t.count = pool.size();
+  if (t.count == 0) return t;
+  const auto count = static_cast<double>(t.count);
+  t.mass = mass * count;
+  t.kinetic = 0.5 * mass * sums.speedSquared;
+  t.potential = t.mass * potentialOf(Vec2(sums.x, sums.y) / count);  // linear in the position
+  t.momentum = mass * Vec2(sums.vx, sums.vy);
+  t.angular = mass * sums.angular;
+  t.maxSpeed = std::sqrt(sums.maxSpeedSquared);
+  return t;
 }
 
 Balance World::Impl::balance() const {
@@ -128,6 +92,7 @@ Vec2 World::Impl::fastestParticle() const {
 void World::Impl::remove(ParticlePool& pool, double mass, std::uint64_t& counter) {
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const bool isFluid = &pool == fluid.get();
+  if (!pool.anyMarked()) return;
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < pool.size(); ++i) {
     if (!pool.isMarked(static_cast<std::uint32_t>(i))) continue;
@@ -138,14 +103,14 @@ void World::Impl::remove(ParticlePool& pool, double mass, std::uint64_t& counter
     ledger.impulse -= mass * v;
     ledger.work -= mass * energy;
   }
-  if (count == 0) return;
   counter += count;
+  membersChanged = true;
   if (isFluid) ledger.massRetired += static_cast<double>(count) * mass;
   pool.compact();
 }
 
 void World::Impl::account(const StepStats& stats, double dt) {
-  const Balance after = balance();
+  const Balance after = judged && !membersChanged ? *judged : balance();
   ledger.substeps += 1;
   ledger.particleSteps += (fluid ? fluid->size() : 0) + (bullets ? bullets->size() : 0);
   ledger.sweeps += static_cast<std::uint64_t>(stats.sweeps);

@@ -103,8 +103,10 @@ struct World::Impl {
   std::vector<BodyState> bodyStates;
   Ledger ledger;
   double time = 0.0;
-  double gravityScale = 0.0;  // largest |g| seen [m/s²]
-  Balance present;            // of the state as it stands
+  double gravityScale = 0.0;      // largest |g| seen [m/s²]
+  Balance present;                // of the state as it stands
+  std::optional<Balance> judged;  // of the state that judge() saw, and whether particles came or went since
+  bool membersChanged = false;
   bool anyLifetime = false;
   bool insideStep = false;    // substep() is called by step(), which counts
   bool started = false;       // the accounts hold the start's energy and momentum

@@ -1,5 +1,6 @@
 // The stages of a sub-step.
 #include <froude/base/parallel.h>
+#include <froude/solver/particle_sums.h>
 #include <froude/solver/world_impl.h>
 
 namespace froude {
@@ -105,6 +106,7 @@ StepBound World::Impl::chooseStep(double maxDt) const {
 // What came in broken (a user's columns, say) is taken out before it spreads.
 void World::Impl::quarantine() {
   auto check = [&](ParticlePool& pool, double mass) {
+    if (sumParticles(pool, def.simd).finite()) return;
     const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
     const double bad = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
       double count = 0.0;
@@ -165,8 +167,11 @@ void World::Impl::publishBodies(double dt) {
 }
 
 void World::Impl::judge(StepStats& stats, double dt) {
+  judged.reset();
+  membersChanged = false;
   if (stats.trouble != Trouble::None || fluidModel == nullptr) return;
-  const Balance after = balance();
+  judged = balance();
+  const Balance& after = *judged;
   auto fail = [&](Trouble why, double value, double limit) {
     stats.trouble = why;
     stats.troubleValue = value;
@@ -215,6 +220,7 @@ void World::Impl::emit(double dt) {
         ++ledger.refused;
         return;
       }
+      membersChanged = true;
       const std::size_t i = pool.size() - 1;
       pool.x()[i] = position.x();
       pool.y()[i] = position.y();
@@ -251,6 +257,8 @@ void World::Impl::retire() {
     const Box& box = def.domain.box;
     parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
+        const bool inside = x[i] >= box.min.x() && x[i] < box.max.x() && y[i] >= box.min.y() && y[i] < box.max.y();
+        if (inside) continue;
         if (def.domain.periodicX) x[i] = wrapped(x[i], box.min.x(), box.max.x());
         if (def.domain.periodicY) y[i] = wrapped(y[i], box.min.y(), box.max.y());
         if (!box.contains({x[i], y[i]})) pool.kill(static_cast<std::uint32_t>(i));

@@ -136,4 +136,25 @@ class Obstacles {
   AlignedArray<std::uint32_t> coarseStart_, coarseBodies_;
 };
 
+/// visit(i) for every position i of [begin, end) to which a solid may be as near as reach(i) [m] during the sub-step.
+/// Neighbours in memory should be neighbours in space: the look-up is made for a few at once.
+template <typename Reach, typename Visit>
+void forEachWithin(const Obstacles& obstacles, std::span<const double> x, std::span<const double> y, std::size_t begin,
+                   std::size_t end, Reach&& reach, Visit&& visit) {
+  constexpr std::size_t kTogether = 4;
+  for (std::size_t first = begin; first < end; first += kTogether) {
+    const std::size_t last = std::min(end, first + kTogether);
+    double apart = 0.0, farthest = 0.0;
+    for (std::size_t i = first; i < last; ++i) {
+      const double ax = x[i] - x[first], ay = y[i] - y[first];
+      apart = std::max(apart, ax * ax + ay * ay);
+      farthest = std::max(farthest, reach(i));
+    }
+    if (obstacles.clearance({x[first], y[first]}) > std::sqrt(apart) + farthest) continue;
+    for (std::size_t i = first; i < last; ++i) {
+      if (obstacles.clearance({x[i], y[i]}) <= reach(i)) visit(i);
+    }
+  }
+}
+
 }  // namespace froude

@@ -6,6 +6,7 @@
 // the bytes.)
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -14,9 +15,14 @@ namespace froude::lattice {
 /// Lattice units in a spacing.
 inline constexpr double kUnitsPerSpacing = 8388608.0;  // 2²³
 
-/// Position [spacings] to lattice units, modulo 2³². Precondition: |position| < 2³⁹ spacings.
+/// Position [spacings] to lattice units, rounded to nearest even, modulo 2³². Precondition: |position| < 2³⁹ spacings.
+/// Adding 1.5·2⁵² leaves the integer in the low bits of the mantissa, up to 2⁵¹ of them, without a call.
 inline std::int32_t coordinate(double spacings) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llrint(spacings * kUnitsPerSpacing)));
+  if (!(std::abs(spacings) < 134217728.0)) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llrint(spacings * kUnitsPerSpacing)));
+  }
+  return static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(spacings * kUnitsPerSpacing + 6755399441055744.0)));
 }
 
 /// a − b, wrapped: the true difference for neighbours.

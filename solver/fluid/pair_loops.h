@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include <froude/base/aligned.h>
 #include <froude/base/simd.h>
 #include <froude/particles/cell_grid.h>
 
@@ -19,14 +20,39 @@ struct HiddenPairs {
   const std::uint64_t* words = nullptr;  // per run ceil(length/64) words
 };
 
+/// The least diagonal: a particle without neighbours has none.
+inline constexpr float kSmallestDiagonal = 0.05f;
+
+/// An occupied cell: its particles and where their candidates are. Usual is a cell with at most three runs of at most
+/// 16 candidates, none of them beyond a seam or hidden by a wall.
+struct CellRuns {
+  static constexpr std::uint32_t kUsual = 16;
+  std::uint32_t first = 0, last = 0;
+  std::uint32_t begin[3] = {0, 0, 0};
+  std::uint16_t count[3] = {0, 0, 0};
+  std::uint16_t usual = 0;
+};
+
 /// What all loops of a sub-step share.
 struct PairFrame {
   const CellGrid* grid = nullptr;
   std::span<const std::uint32_t> cells;  // those that hold particles
+  const CellRuns* runs = nullptr;        // one for each of `cells`
   const std::int32_t* x = nullptr;       // lattice coordinates
   const std::int32_t* y = nullptr;
   std::int32_t periodX = 0, periodY = 0;  // lattice units
   HiddenPairs hidden;
+};
+
+/// One Jacobi sweep in the wake of the densities: change = max(−κ, relaxation·(density − target)/diagonal), the paper's
+/// λ (eq. 11) as a correction of what is there already. A target of 0 marks a particle that is new: what it finds, at
+/// least the rest density, is what it may keep. An over-dense start is thus no push.
+struct PressureUpdate {
+  float* target = nullptr;          // null: no update
+  const float* diagonal = nullptr;  // null: the one computed in the same loop
+  const float* kappa = nullptr;
+  float* change = nullptr;
+  float relaxation = 0.0f;
 };
 
 /// Density at the present coordinates: density = Σ W + λ + g·s, s the displacement since the walls were integrated.
@@ -39,6 +65,7 @@ struct DensityLoop {
   const float* shiftY = nullptr;
   float* density = nullptr;
   float* diagonal = nullptr;  // may be null
+  PressureUpdate update{};
 };
 
 /// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it. Behind the wall the
@@ -52,6 +79,7 @@ struct DisplacementLoop {
   float* shiftY = nullptr;
   std::int32_t* newX = nullptr;  // written: PairFrame::x plus the new displacement
   std::int32_t* newY = nullptr;
+  float* kappa = nullptr;  // where not null, `pressure` is added to it
 };
 
 /// Relative velocity smoothing and laminar viscosity: change = Σ weight(q)·(vⱼ − vᵢ), weight = a·W + b·(−F),
@@ -64,9 +92,14 @@ struct ViscosityLoop {
   float* changeY = nullptr;
 };
 
+/// Fills `runs`, one for each of `cells`. Reuses the memory.
+void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, const HiddenPairs& hidden,
+                  AlignedArray<CellRuns>& runs);
+
 /// The loops of one instruction set; each handles cells [begin, end) of PairFrame::cells.
 struct PairLoops {
-  void (*density)(const PairFrame&, const DensityLoop&, std::size_t begin, std::size_t end);
+  /// Returns Σ max(0, density − target) where pressures are updated.
+  double (*density)(const PairFrame&, const DensityLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
 };

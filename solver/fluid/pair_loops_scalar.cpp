@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+
+#include <froude/base/parallel.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/lattice.h>
 #include <froude/solver/fluid/pair_loops.h>
@@ -42,7 +46,8 @@ void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end,
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
 constexpr auto kTail = static_cast<float>(kernel::kTail);
 
-void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
+double density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
+  double excess = 0.0;
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sum = 0.0f, sx = 0.0f, sy = 0.0f, squares = 0.0f;
     forEachPair(frame, cell, i, [&](std::uint32_t, float dx, float dy, float m) {
@@ -64,7 +69,15 @@ void density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin,
       const float px = -2.0f * kNorm * sx, py = -2.0f * kNorm * sy;
       loop.diagonal[i] = (px + gx) * (px + 2.0f * gx) + (py + gy) * (py + 2.0f * gy) + 4.0f * kNorm * kNorm * squares;
     }
+    const PressureUpdate& update = loop.update;
+    if (update.target == nullptr) return;
+    if (update.target[i] == 0.0f) update.target[i] = std::max(loop.density[i], 1.0f);
+    const float gain = loop.density[i] - update.target[i];
+    const float diagonal = update.diagonal != nullptr ? update.diagonal[i] : loop.diagonal[i];
+    update.change[i] = std::max(-update.kappa[i], update.relaxation * gain / std::max(diagonal, kSmallestDiagonal));
+    excess += static_cast<double>(std::max(gain, 0.0f));
   });
+  return excess;
 }
 
 void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t begin, std::size_t end) {
@@ -88,6 +101,7 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
     loop.shiftY[i] += moveY;
     loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(moveX / kUnit)));
     loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(moveY / kUnit)));
+    if (loop.kappa != nullptr) loop.kappa[i] += own;
   });
 }
 
@@ -108,6 +122,31 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
 }
 
 }  // namespace
+
+void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, const HiddenPairs& hidden,
+                  AlignedArray<CellRuns>& runs) {
+  runs.resize(cells.size());
+  const std::span<const std::uint32_t> start = grid.cellStart();
+  parallelFor(cells.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      CellRuns& r = runs[k];
+      r = {};
+      r.first = start[cells[k]];
+      r.last = start[cells[k] + 1];
+      bool usual = true;
+      std::uint32_t count = 0;
+      grid.forEachRun(cells[k], [&](const CellRun& run) {
+        const std::uint32_t length = run.end - run.begin;
+        usual = usual && count < 3 && length <= CellRuns::kUsual && run.shiftX == 0.0 && run.shiftY == 0.0;
+        if (!usual) return;
+        r.begin[count] = run.begin;
+        r.count[count++] = static_cast<std::uint16_t>(length);
+      });
+      for (std::uint32_t i = r.first; hidden.offset != nullptr && i < r.last; ++i) usual &= hidden.offset[i] < 0;
+      r.usual = usual ? 1 : 0;
+    }
+  });
+}
 
 const PairLoops& scalarPairLoops() {
   static constexpr PairLoops kLoops{density, displace, viscosity};

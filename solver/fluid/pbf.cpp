@@ -1,5 +1,8 @@
 #include <froude/solver/fluid/pbf.h>
 
+#include <array>
+#include <limits>
+
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
@@ -9,15 +12,16 @@ namespace froude {
 namespace {
 
 // Defaults and their measurements: docs/decisions/solver-pbf.md.
-constexpr double kCourant = 0.25;    // of the support radius a sub-step
-constexpr double kStiffness = 0.15;  // largest κ = p·dt²/dx²: beyond, the arrangement of the particles rings
+constexpr double kCourant = 0.6;  // of the support radius a sub-step; 1 would be unstable by definition
+// Largest κ = p·dt²/dx², of twice the typical pressure and of the highest one: beyond, the arrangement of the particles
+// rings.
+constexpr double kTypicalStiffness = 0.15, kLargestStiffness = 0.3;
 constexpr int kMinSweeps = 2, kMaxSweeps = 30;
-constexpr int kFreshSweeps = 300;           // where no pressure is known yet
-constexpr double kTolerance = 2e-4;         // mean density gained in a sub-step
-constexpr double kRelaxation = 0.6;         // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
-constexpr float kStabilization = 0.3f;      // share of the density error that is shifted away a sub-step
-constexpr float kLoose = 0.02f;             // below 1 − this a particle is free to be compressed
-constexpr float kSmallestDiagonal = 0.05f;  // a particle without neighbours has none
+constexpr int kFreshSweeps = 300;       // where no pressure is known yet
+constexpr double kTolerance = 2e-4;     // mean density gained in a sub-step
+constexpr double kRelaxation = 0.6;     // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
+constexpr float kStabilization = 0.3f;  // share of the density error that is shifted away a sub-step
+constexpr float kLoose = 0.02f;         // below 1 − this a particle is free to be compressed
 constexpr float kSmoothing = 0.05f;  // XSPH (the paper's eq. 17), times √κ: a viscosity of 0.05·dx·√p, on any step
 constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
 constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
@@ -42,29 +46,58 @@ StepBound Pbf::stepBound(const ParticlePool& pool, double maxSpeed, double gravi
   const double support = supportRadius();
   if (maxSpeed > 0.0) bound.tighten(courant_ * support / maxSpeed, StepLimit::Courant);
   if (gravity > 0.0) bound.tighten(0.25 * std::sqrt(support / gravity), StepLimit::Acceleration);
-  double most = largestPressure(pool);
-  if (most == 0.0 && !pool.empty()) {  // nothing is known yet: at most what the whole fluid would weigh as one column
+  PressureScale pressure = pressureScale(pool);
+  if (pressure.largest == 0.0 && !pool.empty()) {
+    // Nothing is known yet: at most what the whole fluid would weigh as one column.
     const auto [left, right] = std::minmax_element(pool.x().begin(), pool.x().end());
     const auto [low, high] = std::minmax_element(pool.y().begin(), pool.y().end());
-    most = gravity * std::max(*right - *left, *high - *low);
+    pressure.largest = gravity * std::max(*right - *left, *high - *low);
+    pressure.typical = 0.5 * pressure.largest;
   }
-  if (most > 0.0) bound.tighten(std::sqrt(kStiffness / most) * dx_, StepLimit::Pressure);
+  const double stiffness = std::max(std::min(2.0 * pressure.typical, pressure.largest) / kTypicalStiffness,
+                                    pressure.largest / kLargestStiffness);
+  if (stiffness > 0.0) bound.tighten(dx_ / std::sqrt(stiffness), StepLimit::Pressure);
   if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
   return bound;
 }
 
-double Pbf::largestPressure(const ParticlePool& pool) const {
+// The typical pressure is Σp²/Σp: two thirds of the highest in a fluid at rest, and little moved by the peaks of a
+// splash, which last a step or two.
+Pbf::PressureScale Pbf::pressureScale(const ParticlePool& pool) const {
   const auto pressure = pool.column(pressure_);
-  return parallelMax(pool.size(), 0.0, [&](std::size_t begin, std::size_t end) {
-    float most = 0.0f;
-    for (std::size_t i = begin; i < end; ++i) most = std::max(most, pressure[i]);
-    return static_cast<double>(most);
-  });
+  const std::size_t n = pool.size();
+  struct Part {
+    double sum, squares, largest;
+  };
+  const auto all = reduceBlocks<Part>(
+      n, {0.0, 0.0, 0.0},
+      [&](std::size_t begin, std::size_t end) {
+        // Eight lanes, so that no addition waits for the one before it.
+        std::array<float, 8> sum{}, squares{}, largest{};
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::size_t lane = i % 8;
+          sum[lane] += pressure[i];
+          squares[lane] += pressure[i] * pressure[i];
+          largest[lane] = std::max(largest[lane], pressure[i]);
+        }
+        Part part{0.0, 0.0, 0.0};
+        for (std::size_t lane = 0; lane < 8; ++lane) {
+          part.sum += static_cast<double>(sum[lane]);
+          part.squares += static_cast<double>(squares[lane]);
+          part.largest = std::max(part.largest, static_cast<double>(largest[lane]));
+        }
+        return part;
+      },
+      [](const Part& a, const Part& b) {
+        return Part{a.sum + b.sum, a.squares + b.squares, std::max(a.largest, b.largest)};
+      });
+  return {all.largest, all.sum > 0.0 ? all.squares / all.sum : 0.0};
 }
 
 void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
   if (pool.empty()) return;
   resizeScratch(pool.size());
+  largestPressure_ = pressureScale(pool).largest;
   predict(context, pool, impulses, stats);  // lines 1–4
   sortByCell(context, pool);                // lines 5–7
   meetWalls(context);
@@ -78,25 +111,29 @@ void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger&
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const DiscContact point{0.0, 0.0, 0.0, filter(), true};
   const double dt = context.dt;
+  auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
   contacts_.begin(pool.size());
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec2 at(x[i], y[i]);
-      const Vec2 v = Vec2(vx[i], vy[i]) + dt * context.gravity.at(at, context.time);
-      Vec2 to = at + dt * v;
-      const double travel = (to - at).norm();
-      if (context.obstacles.clearance(at) <= travel && context.obstacles.freeDistance(at, point.filter) <= travel) {
-        PathResult path;
-        followPath(context.obstacles, at, v, dt, point, path);
-        contacts_.addMean(i, path, at, v, dt);
-        to = path.x;
-      }
+      const Vec2 g = context.gravity.at({x[i], y[i]}, context.time);
       // Until the positions say what the velocity is, it carries the prediction through the sort.
-      vx[i] = (to.x() - x[i]) / dt;
-      vy[i] = (to.y() - y[i]) / dt;
-      predictedX_[i] = to.x();
-      predictedY_[i] = to.y();
+      vx[i] += dt * g.x();
+      vy[i] += dt * g.y();
+      predictedX_[i] = x[i] + dt * vx[i];
+      predictedY_[i] = y[i] + dt * vy[i];
     }
+    forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t i) {
+      const Vec2 at(x[i], y[i]), v(vx[i], vy[i]);
+      if (context.obstacles.freeDistance(at, point.filter) > dt * v.norm()) return;
+      PathResult path;
+      followPath(context.obstacles, at, v, dt, point, path);
+      if (path.contacts == 0) return;
+      contacts_.addMean(i, path, at, v, dt);
+      vx[i] = (path.x.x() - x[i]) / dt;
+      vy[i] = (path.x.y() - y[i]) / dt;
+      predictedX_[i] = path.x.x();
+      predictedY_[i] = path.x.y();
+    });
   });
   stats.gravityImpulse +=
       context.gravity.isConstant()
@@ -112,12 +149,13 @@ void Pbf::sortByCell(const StepContext& context, ParticlePool& pool) {
               fluidFrame(domain_, {predictedX_.data(), n}, {predictedY_.data(), n}, kCellSlack * supportRadius()));
   if (!grid_.sorted()) pool.permute(grid_.order());
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const double perSpacing = 1.0 / dx_;
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       predictedX_[i] = x[i] + context.dt * vx[i];
       predictedY_[i] = y[i] + context.dt * vy[i];
-      latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
-      latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
+      latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) * perSpacing);
+      latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) * perSpacing);
       shiftX_[i] = shiftY_[i] = 0.0f;
     }
   });
@@ -127,12 +165,14 @@ void Pbf::sortByCell(const StepContext& context, ParticlePool& pool) {
 void Pbf::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
+  findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
 }
 
 PairFrame Pbf::frame() const {
   const Vec2 period = domain_.box.size() / dx_;
   return {&grid_,
           occupied_,
+          runs_.data(),
           latticeX_.data(),
           latticeY_.data(),
           domain_.periodicX ? lattice::coordinate(period.x()) : 0,
@@ -140,7 +180,7 @@ PairFrame Pbf::frame() const {
           walls_.hidden()};
 }
 
-void Pbf::runDensity(const StepContext& context, float* density, float* diagonal) {
+double Pbf::runDensity(const StepContext& context, float* density, float* diagonal, const PressureUpdate& update) {
   const PairFrame pairs = frame();
   const bool any = walls_.any();
   const DensityLoop loop{any ? walls_.lambda() : nullptr,
@@ -149,18 +189,29 @@ void Pbf::runDensity(const StepContext& context, float* density, float* diagonal
                          shiftX_.data(),
                          shiftY_.data(),
                          density,
-                         diagonal};
+                         diagonal,
+                         update};
   const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.density(pairs, loop, begin, end); });
+  excess_.resize(blockCount(occupied_.size(), kCellBlock));
+  parallelFor(occupied_.size(), kCellBlock, [&](std::size_t begin, std::size_t end) {
+    excess_[begin / kCellBlock] = loops.density(pairs, loop, begin, end);
+  });
+  double excess = 0.0;
+  for (const double part : excess_) excess += part;
+  return excess;
 }
 
-void Pbf::runDisplacement(const StepContext& context, const float* pressure) {
+void Pbf::runDisplacement(const StepContext& context, const float* pressure, float* kappa) {
   const PairFrame pairs = frame();
-  const DisplacementLoop loop{pressure,           walls_.any() ? walls_.gradientX() : nullptr,
-                              walls_.gradientY(), walls_.tangent(),
-                              shiftX_.data(),     shiftY_.data(),
-                              nextX_.data(),      nextY_.data()};
+  const DisplacementLoop loop{pressure,
+                              walls_.any() ? walls_.gradientX() : nullptr,
+                              walls_.gradientY(),
+                              walls_.tangent(),
+                              shiftX_.data(),
+                              shiftY_.data(),
+                              nextX_.data(),
+                              nextY_.data(),
+                              kappa};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
@@ -169,54 +220,39 @@ void Pbf::runDisplacement(const StepContext& context, const float* pressure) {
 }
 
 void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
-  const auto pressure = pool.column(pressure_);
+  const auto pressure = pool.column(pressure_), density = pool.column(density_);
   const auto unit = static_cast<float>(pressureUnit(context.dt));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) kappa_[i] = unit * pressure[i];
+    for (std::size_t i = begin; i < end; ++i) {
+      kappa_[i] = unit * pressure[i];
+      // The velocity is to keep each density as it was, so that pressures answer to the rate of compression only:
+      // answering to its sum as well, kept pressures wind up and a deep fluid bounces. What has room may be compressed
+      // up to its rest density.
+      target_[i] = density[i] == 0.0f ? 0.0f : std::max(density[i], 1.0f - kLoose);
+    }
   });
-  runDisplacement(context, kappa_.data());
+  runDisplacement(context, kappa_.data(), nullptr);
 }
 
 void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   const auto density = pool.column(density_);
-  const bool fresh = largestPressure(pool) == 0.0;  // nothing was there to warm-start from
-  chooseTargets(pool);
-  runDensity(context, density.data(), diagonal_.data());
-  keepFirstDensities(pool);
+  const bool fresh = largestPressure_ == 0.0;  // nothing was there to warm-start from
+  const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
+                              static_cast<float>(kRelaxation)};
+  double excess = runDensity(context, density.data(), diagonal_.data(), update);
   int sweep = 0;
   if (fresh) {
     liftFromCoarse(context, pool);
-    runDisplacement(context, change_.data());
-    runDensity(context, density.data(), nullptr);
+    runDisplacement(context, change_.data(), kappa_.data());
+    excess = runDensity(context, density.data(), nullptr, update);
   }
-  while (!solved(pool, sweep, fresh)) {
-    relaxPressures(pool);
-    runDisplacement(context, change_.data());
-    runDensity(context, density.data(), nullptr);
-    ++sweep;
+  for (; !solved(excess / static_cast<double>(pool.size()), sweep, fresh); ++sweep) {
+    runDisplacement(context, change_.data(), kappa_.data());
+    excess = runDensity(context, density.data(), nullptr, update);
   }
   stats.sweeps = sweep + 1;
   stabilize(context, pool);
   judgeDensity(context, pool, stats);
-}
-
-// The velocity is to keep each density as it was, so that pressures answer to the rate of compression only: answering
-// to its sum as well, kept pressures wind up and a deep fluid bounces. What has room may be compressed up to its rest
-// density.
-void Pbf::chooseTargets(const ParticlePool& pool) {
-  const auto density = pool.column(density_);
-  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      target_[i] = density[i] == 0.0f ? 0.0f : std::max(density[i], 1.0f - kLoose);
-  });
-}
-
-// A density of 0 marked a particle that is new: what it finds is what it may keep. An over-dense start is thus no push.
-void Pbf::keepFirstDensities(const ParticlePool& pool) {
-  const auto density = pool.column(density_);
-  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) target_[i] = target_[i] == 0.0f ? std::max(density[i], 1.0f) : target_[i];
-  });
 }
 
 void Pbf::liftFromCoarse(const StepContext& context, const ParticlePool& pool) {
@@ -228,35 +264,16 @@ void Pbf::liftFromCoarse(const StepContext& context, const ParticlePool& pool) {
   });
   coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, change_.data(), correction_.data());
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) kappa_[i] = change_[i] = std::max(0.0f, correction_[i]);
+    for (std::size_t i = begin; i < end; ++i) change_[i] = std::max(0.0f, correction_[i]);
   });
 }
 
-bool Pbf::solved(const ParticlePool& pool, int sweep, bool fresh) const {
+// `excess`: mean density gained in the sub-step.
+bool Pbf::solved(double excess, int sweep, bool fresh) const {
   if (def_.sweeps > 0) return sweep == def_.sweeps;
   if (sweep < kMinSweeps) return false;
   if (sweep >= (fresh ? kFreshSweeps : kMaxSweeps)) return true;
-  const auto density = pool.column(density_);
-  const double excess = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t i = begin; i < end; ++i) sum += std::max(0.0f, density[i] - target_[i]);
-    return sum;
-  });
-  return excess < (fresh ? 0.1 : 1.0) * kTolerance * static_cast<double>(pool.size());
-}
-
-// One Jacobi sweep, projected on κ ≥ 0: the paper's λ (eq. 11) as a correction of what is there already.
-void Pbf::relaxPressures(const ParticlePool& pool) {
-  const auto density = pool.column(density_);
-  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float step =
-          static_cast<float>(kRelaxation) * (density[i] - target_[i]) / std::max(diagonal_[i], kSmallestDiagonal);
-      const float next = std::max(0.0f, kappa_[i] + step);
-      change_[i] = next - kappa_[i];
-      kappa_[i] = next;
-    }
-  });
+  return excess < (fresh ? 0.1 : 1.0) * kTolerance;
 }
 
 // Density that is left above rest is shifted away without becoming velocity, as pre-stabilisation in Macklin et al.,
@@ -270,63 +287,86 @@ void Pbf::stabilize(const StepContext& context, ParticlePool& pool) {
       solvedY_[i] = shiftY_[i];
     }
   });
-  runDisplacement(context, change_.data());
-  runDensity(context, density.data(), nullptr);
+  runDisplacement(context, change_.data(), nullptr);
+  runDensity(context, density.data(), nullptr, {});
 }
 
 void Pbf::judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   const auto density = pool.column(density_), pressure = pool.column(pressure_);
   const std::size_t n = pool.size();
   const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
-  const double sum = parallelSum(n, [&](std::size_t begin, std::size_t end) {
-    double total = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      pressure[i] = unit * kappa_[i];
-      total += std::max(0.0f, density[i] - 1.0f);
-    }
-    return total;
-  });
-  stats.meanCompression = sum / static_cast<double>(n);
-  stats.maxCompression = parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
-    float most = 0.0f;
-    for (std::size_t i = begin; i < end; ++i)
-      most = std::isnan(density[i]) ? density[i] : std::max(most, density[i] - 1.0f);
-    return static_cast<double>(most);
-  });
+  struct Part {
+    double compression;
+    float density, pressure;
+  };
+  const auto all = reduceBlocks<Part>(
+      n, {0.0, 0.0f, 0.0f},
+      [&](std::size_t begin, std::size_t end) {
+        std::array<float, 8> sum{}, dense{}, high{};
+        bool finite = true;
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::size_t lane = i % 8;
+          const float above = density[i] - 1.0f;
+          pressure[i] = unit * kappa_[i];
+          sum[lane] += std::max(0.0f, above);
+          dense[lane] = std::max(dense[lane], above);
+          high[lane] = std::max(high[lane], pressure[i]);
+          finite = finite && std::abs(above) < std::numeric_limits<float>::infinity();
+        }
+        Part part{0.0, finite ? 0.0f : std::numeric_limits<float>::infinity(), 0.0f};
+        for (std::size_t lane = 0; lane < 8; ++lane) {
+          part.compression += static_cast<double>(sum[lane]);
+          part.density = std::max(part.density, dense[lane]);
+          part.pressure = std::max(part.pressure, high[lane]);
+        }
+        return part;
+      },
+      [](const Part& a, const Part& b) {
+        return Part{a.compression + b.compression, std::max(a.density, b.density), std::max(a.pressure, b.pressure)};
+      });
+  stats.meanCompression = all.compression / static_cast<double>(n);
+  stats.maxCompression = static_cast<double>(all.density);
+  largestPressure_ = static_cast<double>(all.pressure);
 }
 
 void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const DiscContact point{0.0, 0.0, 0.0, filter(), true};
-  const double dt = context.dt;
+  const double dt = context.dt, rate = 1.0 / dt;
+  auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
   contacts_.begin(pool.size());
   crushed_.assign(blockCount(pool.size()), 0);
   leaks_.assign(blockCount(pool.size()), 0);
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      predictedX_[i] += dx_ * static_cast<double>(shiftX_[i]);
+      predictedY_[i] += dx_ * static_cast<double>(shiftY_[i]);
+    }
+    forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t i) {
       const Vec2 at(x[i], y[i]);
-      Vec2 to(predictedX_[i] + dx_ * static_cast<double>(shiftX_[i]),
-              predictedY_[i] + dx_ * static_cast<double>(shiftY_[i]));
-      const double travel = (to - at).norm();
-      if (context.obstacles.clearance(at) <= travel && context.obstacles.freeDistance(at, point.filter) <= travel) {
-        PathResult path;
-        const Vec2 v = (to - at) / dt;
-        followPath(context.obstacles, at, v, dt, point, path);
-        if (path.contacts > 0) {
-          contacts_.addMean(i, path, at, v, dt);
-          to = path.x;
-        }
-        if (context.obstacles.distance(to, point.filter).distance < 0.0) {
-          // Only what is squeezed can be here: it has no free place.
-          ++(path.crushed ? crushed_ : leaks_)[begin / kBlockSize];
-          pool.kill(static_cast<std::uint32_t>(i));
-        }
+      Vec2 to(predictedX_[i], predictedY_[i]);
+      if (context.obstacles.freeDistance(at, point.filter) > (to - at).norm()) return;
+      PathResult path;
+      const Vec2 v = (to - at) / dt;
+      followPath(context.obstacles, at, v, dt, point, path);
+      if (path.contacts > 0) {
+        contacts_.addMean(i, path, at, v, dt);
+        to = path.x;
       }
+      if (context.obstacles.distance(to, point.filter).distance < 0.0) {
+        // Only what is squeezed can be here: it has no free place.
+        ++(path.crushed ? crushed_ : leaks_)[begin / kBlockSize];
+        pool.kill(static_cast<std::uint32_t>(i));
+      }
+      predictedX_[i] = to.x();
+      predictedY_[i] = to.y();
+    });
+    for (std::size_t i = begin; i < end; ++i) {
       // The shift of the stabilisation is no velocity.
-      vx[i] = (to.x() - at.x() - dx_ * static_cast<double>(shiftX_[i] - solvedX_[i])) / dt;
-      vy[i] = (to.y() - at.y() - dx_ * static_cast<double>(shiftY_[i] - solvedY_[i])) / dt;
-      x[i] = to.x();
-      y[i] = to.y();
+      vx[i] = (predictedX_[i] - x[i] - dx_ * static_cast<double>(shiftX_[i] - solvedX_[i])) * rate;
+      vy[i] = (predictedY_[i] - y[i] - dx_ * static_cast<double>(shiftY_[i] - solvedY_[i])) * rate;
+      x[i] = predictedX_[i];
+      y[i] = predictedY_[i];
     }
   });
   stats.wallHits += contacts_.size();
@@ -378,7 +418,7 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
     }
   });
   const PairFrame pairs = frame();
-  const double stiffness = pressureUnit(context.dt) * largestPressure(pool);
+  const double stiffness = pressureUnit(context.dt) * largestPressure_;
   const ViscosityLoop loop{velocityX_.data(),
                            velocityY_.data(),
                            kSmoothing * static_cast<float>(std::sqrt(stiffness)),

@@ -32,11 +32,8 @@ class Pbf final : public FluidModel {
   void meetWalls(const StepContext& context);
   void warmStart(const StepContext& context, ParticlePool& pool);
   void solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
-  void chooseTargets(const ParticlePool& pool);
-  void keepFirstDensities(const ParticlePool& pool);
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool);
-  bool solved(const ParticlePool& pool, int sweep, bool fresh) const;
-  void relaxPressures(const ParticlePool& pool);
+  bool solved(double excess, int sweep, bool fresh) const;
   void stabilize(const StepContext& context, ParticlePool& pool);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
@@ -46,11 +43,15 @@ class Pbf final : public FluidModel {
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;
   void wrapPeriodic(ParticlePool& pool);
   PairFrame frame() const;
-  void runDensity(const StepContext& context, float* density, float* diagonal);
-  void runDisplacement(const StepContext& context, const float* pressure);
+  double runDensity(const StepContext& context, float* density, float* diagonal, const PressureUpdate& update);
+  void runDisplacement(const StepContext& context, const float* pressure, float* kappa);
   void resizeScratch(std::size_t n);
-  double largestPressure(const ParticlePool& pool) const;  // p/ρ [m²/s²]
-  double pressureUnit(double dt) const;                    // κ of one m²/s²: dt²/dx²
+  /// p/ρ [m²/s²].
+  struct PressureScale {
+    double largest, typical;
+  };
+  PressureScale pressureScale(const ParticlePool& pool) const;
+  double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
 
   FluidDef def_;
   DomainDef domain_;
@@ -61,11 +62,14 @@ class Pbf final : public FluidModel {
   WallLayer walls_;
   CoarsePressure coarse_;
   std::vector<std::uint32_t> occupied_;
+  AlignedArray<CellRuns> runs_;
   // Scratch of a sub-step, by index; lengths in spacings where not said otherwise.
   AlignedArray<double> predictedX_, predictedY_;  // [m]
   AlignedArray<std::int32_t> latticeX_, latticeY_, nextX_, nextY_;
   AlignedArray<float> shiftX_, shiftY_, solvedX_, solvedY_, kappa_, change_, correction_, target_, diagonal_;
   AlignedArray<float> velocityX_, velocityY_, smoothX_, smoothY_;  // [m/s]
+  std::vector<double> excess_;                                     // one a task
+  double largestPressure_ = 0.0;  // p/ρ at the start of a sub-step, at its end once it is judged [m²/s²]
   ContactLog contacts_;
   std::vector<std::uint32_t> crushed_, leaks_;  // counts, one a block
 };

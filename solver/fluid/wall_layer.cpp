@@ -62,13 +62,13 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
     block.words.reserve(kBlockSize);
     block.links.clear();
     block.words.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      lambda_[i] = gradientX_[i] = gradientY_[i] = tangent_[i] = 0.0f;
-      offset_[i] = -1;
-      if (obstacles.clearance({x[i], y[i]}) < support) {
-        integrate(obstacles, grid, x, y, static_cast<std::uint32_t>(i), block);
-      }
+    for (AlignedArray<float>* a : {&lambda_, &gradientX_, &gradientY_, &tangent_}) {
+      std::fill(a->begin() + begin, a->begin() + end, 0.0f);
     }
+    std::fill(offset_.begin() + begin, offset_.begin() + end, -1);
+    forEachWithin(
+        obstacles, x, y, begin, end, [&](std::size_t) { return support; },
+        [&](std::size_t i) { integrate(obstacles, grid, x, y, static_cast<std::uint32_t>(i), block); });
   });
 
   // Each block's words go behind those of the blocks before it.

@@ -1,6 +1,7 @@
 // Loops over fixed blocks in the caller's TBB arena, and sums whose bits do not depend on the number of threads.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -51,6 +52,21 @@ FROUDE_API double parallelSum(std::size_t count, FunctionRef<double(std::size_t,
 
 /// Largest body(begin, end) over the blocks; `lowest` for count = 0. A NaN from any block is returned as NaN.
 FROUDE_API double parallelMax(std::size_t count, double lowest, FunctionRef<double(std::size_t, std::size_t)> body);
+
+/// The parts body(begin, end) of fixed blocks, joined in block order by join(Part, Part) → Part, from `start` on: the
+/// same bits on any number of threads. For several sums and extremes in one pass. No allocation.
+template <typename Part, typename Body, typename Join>
+Part reduceBlocks(std::size_t count, const Part& start, Body&& body, Join&& join) {
+  constexpr std::size_t kMaxBlocks = 256;
+  std::size_t blockSize = kBlockSize;
+  while (blockCount(count, blockSize) > kMaxBlocks) blockSize *= 2;
+  std::array<Part, kMaxBlocks> parts;
+  parallelFor(count, blockSize,
+              [&](std::size_t begin, std::size_t end) { parts[begin / blockSize] = body(begin, end); });
+  Part all = start;
+  for (std::size_t b = 0; b < blockCount(count, blockSize); ++b) all = join(all, parts[b]);
+  return all;
+}
 
 /// Threads that a loop may use here: the concurrency of the arena of the caller.
 FROUDE_API int concurrency();
