@@ -63,6 +63,7 @@ void Obstacles::bake(const std::vector<Baked>& fixed) {
   if (domain_.periodicY) walls.closed[2] = walls.closed[3] = false;
   fixed_ = std::make_unique<WorldField>(placed, walls, band_);
   baked_ = fixed;
+  ++fixedVersion_;
 }
 
 void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {

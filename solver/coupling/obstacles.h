@@ -35,6 +35,8 @@ class Obstacles {
   /// For bodies that came, went or were put elsewhere: as constructed anew, but fields that are the same are kept.
   /// Cost: that of the constructor for what is new, a comparison for the rest.
   void rebuild(const BodySet& bodies);
+  /// Rises whenever the fixed obstacles have changed: what is kept of them elsewhere is to be made anew.
+  std::uint64_t fixedVersion() const { return fixedVersion_; }
 
   /// Poses at the start of the sub-step and their motion during dt [s]. `reach` [m]: no query of this sub-step looks
   /// farther than this beyond a moving body. Cost: moving bodies × cells that they sweep; nothing if none moves.
@@ -118,6 +120,7 @@ class Obstacles {
   double band_;
   std::unique_ptr<WorldField> fixed_;
   std::vector<Baked> baked_;
+  std::uint64_t fixedVersion_ = 0;
   struct Surface {
     double velocity, friction, restitution;
     int moving;  // index into moving_, −1 for a fixed body
