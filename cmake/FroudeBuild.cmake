@@ -56,16 +56,32 @@ function(froude_include_root)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/version.h.in ${FROUDE_INCLUDE_ROOT}/froude/version.h)
 endfunction()
 
-# froude_floor(name [dependencies...]): the library froude::name of all sources in the current folder and below.
+# froude_floor(name [dependencies...] [PRIVATE headers...]): the library froude::name of all sources in the current folder
+# and below. Its public headers are those of the folder itself without the private ones and *-inl.h; see FroudeInstall.cmake.
 function(froude_floor name)
+  cmake_parse_arguments(PARSE_ARGV 1 floor "" "" "PRIVATE")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
+  list(FILTER headers EXCLUDE REGEX "-inl\\.h$")
+  foreach(header IN LISTS floor_PRIVATE)
+    if(NOT header IN_LIST headers)
+      message(FATAL_ERROR "${CMAKE_CURRENT_SOURCE_DIR} has no ${header} to keep private")
+    endif()
+  endforeach()
+  list(REMOVE_ITEM headers ${floor_PRIVATE} "")
   add_library(froude_${name} ${sources})
   add_library(froude::${name} ALIAS froude_${name})
-  set_target_properties(froude_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0)
+  # Until 1.0 a minor version may change interfaces, so it is part of a shared library's name.
+  set_target_properties(froude_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH $ORIGIN FROUDE_PUBLIC_HEADERS "${headers}")
+  target_compile_features(froude_${name} PUBLIC cxx_std_20)
   target_include_directories(froude_${name} PUBLIC
     $<BUILD_INTERFACE:${FROUDE_INCLUDE_ROOT}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(froude_${name} PUBLIC Eigen3::Eigen ${ARGN} PRIVATE $<BUILD_INTERFACE:froude_settings>)
+  target_link_libraries(froude_${name} PUBLIC Eigen3::Eigen ${floor_UNPARSED_ARGUMENTS} PRIVATE $<BUILD_INTERFACE:froude_settings>)
 endfunction()
+
+# What Highway is called while Froude is built, and what an installed package calls it (froudeConfig.cmake).
+set(FROUDE_HIGHWAY $<BUILD_INTERFACE:PkgConfig::hwy> $<INSTALL_INTERFACE:froude::highway>)
 
 # Gives every test of a build with sanitizers their settings, however ctest is called: a file that ctest reads first.
 function(froude_sanitizer_environment)

@@ -1,6 +1,7 @@
 // DistanceField: the signed distance to one polygon, precomputed in cells and exact within a band around the boundary.
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/base/parallel.h>
 #include <froude/fields/edge_grid.h>
 #include <froude/fields/field_sample.h>
@@ -11,7 +12,7 @@ namespace froude {
 /// A grid over the polygon's box grown by the band; a cell near the boundary keeps the edges that are closest to at
 /// least one of its points, any other cell a conservative distance. All points are in the polygon's own frame [m].
 /// Immutable; queries allocate nothing and may run on any number of threads.
-class DistanceField {
+class FROUDE_API DistanceField {
  public:
   /// `band` [m]: how far from the boundary, on both sides, `sample` is exact: at least the largest disc's radius or
   /// support radius. `cellSize` [m]: 0 chooses it by the polygon's size and number of edges. Throws Error unless band >

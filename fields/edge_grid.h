@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/parallel.h>
 #include <froude/base/transform.h>
 #include <froude/fields/field_sample.h>
@@ -53,7 +54,7 @@ struct GridPlan {
 /// least one of the cell's points: those no farther than the farthest point of the closest edge. Other cells are wholly
 /// outside or wholly inside and keep a clearance. A coarser grid lists all edges within the band, for queries that must
 /// not lose any.
-class EdgeGrid {
+class FROUDE_API EdgeGrid {
  public:
   EdgeGrid(std::vector<GridEdge> edges, const GridPlan& plan);
 

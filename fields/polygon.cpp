@@ -60,6 +60,15 @@ bool Polygon::contains(const Vec2& p) const {
   return inside;
 }
 
+Polygon Polygon::restored(std::vector<Vec2> vertices, std::vector<std::uint32_t> ringStarts) {
+  Polygon polygon;
+  polygon.vertices_ = std::move(vertices);
+  polygon.ringStarts_ = std::move(ringStarts);
+  polygon.link();
+  polygon.measure();
+  return polygon;
+}
+
 Polygon Polygon::transformed(const Transform& transform) const {
   Polygon moved = *this;
   for (Vec2& v : moved.vertices_) v = transform.toWorld(v);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/transform.h>
 #include <froude/base/types.h>
@@ -12,7 +13,7 @@
 namespace froude {
 
 /// A polygon that cannot be repaired; `what()` names vertices by index and coordinates.
-class PolygonError : public Error {
+class FROUDE_API PolygonError : public Error {
  public:
   enum class Reason {
     TooFewVertices,  ///< fewer than three different vertices in a ring
@@ -33,7 +34,7 @@ class PolygonError : public Error {
 /// Outer ring counter-clockwise, holes clockwise, so that the solid is on the left of every edge. Rings are closed
 /// implicitly. Edge i runs from vertex i to its successor in the ring, so edges and vertices share their numbers.
 /// Immutable.
-class Polygon {
+class FROUDE_API Polygon {
  public:
   /// Checks and repairs. Repaired, with a line in `notes` for each: wrong winding, a repeated closing or neighbouring
   /// vertex, a vertex in the middle of a straight run. All decisions are exact. Coordinates [m]. Throws PolygonError.
@@ -68,6 +69,10 @@ class Polygon {
   const Box& bounds() const { return bounds_; }
   /// True inside and exactly on the boundary. Exact. Cost: O(edges).
   bool contains(const Vec2& p) const;
+
+  /// The polygon whose `vertices()` and `ringStarts()` these were, bit by bit; nothing is checked again. For saved
+  /// states.
+  static Polygon restored(std::vector<Vec2> vertices, std::vector<std::uint32_t> ringStarts);
 
   /// The same polygon in another frame. Vertices are rounded to the nearest double there; nothing is checked again.
   Polygon transformed(const Transform& transform) const;

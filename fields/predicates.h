@@ -1,13 +1,14 @@
 // Geometric decisions that are exact for doubles: on which side of a line does a point lie?
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/base/types.h>
 
 namespace froude {
 
 namespace detail {
 /// The slow, exact branch of `orientation`.
-int orientationExact(const Vec2& a, const Vec2& b, const Vec2& c);
+FROUDE_API int orientationExact(const Vec2& a, const Vec2& b, const Vec2& c);
 }  // namespace detail
 
 /// +1 if c lies to the left of the directed line a → b, −1 if to the right, 0 if exactly on it. Exact for all doubles
@@ -25,11 +26,11 @@ inline int orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// True if p lies exactly on the closed segment a b.
-bool onSegment(const Vec2& a, const Vec2& b, const Vec2& p);
+FROUDE_API bool onSegment(const Vec2& a, const Vec2& b, const Vec2& p);
 
 /// How two closed segments meet: not at all, in a single point that is inside both, or otherwise (an end point on the
 /// other segment, or a shared piece). Exact.
 enum class SegmentContact { None, Crossing, Touching };
-SegmentContact segmentContact(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+FROUDE_API SegmentContact segmentContact(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 
 }  // namespace froude

@@ -1,6 +1,7 @@
 // The swept query: when does a moving disc first touch a polygon, fixed or moving and turning? Never misses a crossing.
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/base/transform.h>
 #include <froude/base/types.h>
 
@@ -22,7 +23,7 @@ struct SweepHit {
 };
 
 /// Constant velocity and spin during a step.
-struct RigidMotion {
+struct FROUDE_API RigidMotion {
   Transform start;          ///< pose at the beginning
   Vec2 velocity{0.0, 0.0};  ///< of the polygon's origin [m/s]
   double spin = 0.0;        ///< [rad/s]
@@ -44,7 +45,7 @@ inline constexpr double kSweepSkin = 0x1p-44;
 /// hits at time 0. For radius 0 the decision on the boundary itself is exact. A disc that overlaps by more than the
 /// skin at the start is reported at time 0 with `startedInside`, whatever its direction. A path with a coordinate that
 /// is not finite never hits. No allocation. Cost: cells crossed; empty space is skipped by its clearance.
-SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to, double radius);
+FROUDE_API SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to, double radius);
 
 /// The same for a polygon that moves: the disc goes straight from → to in the world during `dt` [s], and all of the
 /// answer is in world coordinates at the time of impact.
@@ -53,7 +54,7 @@ SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to,
 /// shortened until it is as small as rounding, so no crossing is missed at any speed, spin or thickness. Where a disc
 /// grazes for long, it is held off by at most a thousandth of its radius, or of a millionth of the polygon's size if
 /// that is less or the radius is 0.
-SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double dt, const Vec2& from, const Vec2& to,
-                   double radius);
+FROUDE_API SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double dt, const Vec2& from,
+                              const Vec2& to, double radius);
 
 }  // namespace froude

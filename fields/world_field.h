@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/parallel.h>
 #include <froude/fields/edge_grid.h>
 #include <froude/fields/field_sample.h>
@@ -54,7 +55,7 @@ struct WorldSample : FieldSample {
 
 /// The union of the placed polygons and of what lies beyond closed walls. All points are in world coordinates [m].
 /// Immutable; queries allocate nothing and may run on any number of threads.
-class WorldField {
+class FROUDE_API WorldField {
  public:
   /// `band` [m] as in DistanceField; `cellSize` [m]: 0 chooses it, at most 4 million cells. The grid covers the domain
   /// grown by the band (without a domain: all polygons grown by the band). Throws Error unless band > 0 and finite.

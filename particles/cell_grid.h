@@ -5,13 +5,14 @@
 #include <span>
 
 #include <froude/base/aligned.h>
+#include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/types.h>
 
 namespace froude {
 
 /// Where the cells are. Row-major: cell = iy · nx + ix.
-struct GridFrame {
+struct FROUDE_API GridFrame {
   Vec2 origin{0.0, 0.0};  ///< lower left corner [m]
   double cellSize = 1.0;  ///< edge of a cell and largest search radius [m]; periodic axes stretch it, see cellExtent
   std::int32_t nx = 1, ny = 1;
@@ -53,7 +54,7 @@ struct CellRun {
 /// keeps neighbour search right (clamping brings no two particles farther apart) but slow if many are; along a periodic
 /// axis positions must be inside the period. A particle with a position that is not a number goes to a border cell.
 /// The result depends on the input alone, not on threads. Allocates only where a build is larger than all before.
-class CellGrid {
+class FROUDE_API CellGrid {
  public:
   /// x, y: positions [m], same length, below 2³². Cost: O(particles + cells); see docs/decisions.
   void build(std::span<const double> x, std::span<const double> y, const GridFrame& frame);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include <froude/base/api.h>
 #include <froude/base/archive.h>
 #include <froude/base/parallel.h>
 #include <froude/base/random.h>
@@ -30,7 +31,7 @@ struct EmitterDef {
 };
 
 /// A definition that cannot work, in words.
-class EmitterError : public Error {
+class FROUDE_API EmitterError : public Error {
  public:
   using Error::Error;
 };
@@ -41,7 +42,7 @@ class EmitterError : public Error {
 /// Each has moved on since its own instant by speed · (rest of the step), so that the jet does not depend on the steps:
 /// positions agree to rounding however time is divided. State: the numbers of events (rows or bullets) and of refusals;
 /// nothing else.
-class Emitter {
+class FROUDE_API Emitter {
  public:
   using Place = FunctionRef<void(const Vec2& position, const Vec2& velocity)>;
 

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/parallel.h>
 #include <froude/base/random.h>
@@ -17,7 +18,7 @@ namespace froude {
 class Polygon;
 
 /// A shape that cannot be filled: wrong spacing, no free place, more points than the caller allows.
-class FillError : public Error {
+class FROUDE_API FillError : public Error {
  public:
   using Error::Error;
 };
@@ -30,19 +31,19 @@ struct FillResult {
 /// The lattice (xmin + (i+½)·spacing, ymin + (j+½)·spacing) over the shape's bounding box: all places inside the shape
 /// for which isBlocked is false. A hole is outside, and so is the boundary (to 1e-9 spacings). FillError if spacing [m]
 /// is not a positive number or the lattice has more than `limit` places. Cost: O(places + rows · edges).
-FillResult fillLattice(const Polygon& shape, double spacing, FunctionRef<bool(const Vec2&)> isBlocked,
-                       std::size_t limit = std::size_t{1} << 30);
-FillResult fillLattice(const Polygon& shape, double spacing);
+FROUDE_API FillResult fillLattice(const Polygon& shape, double spacing, FunctionRef<bool(const Vec2&)> isBlocked,
+                                  std::size_t limit = std::size_t{1} << 30);
+FROUDE_API FillResult fillLattice(const Polygon& shape, double spacing);
 
 /// `count` places uniformly at random in the shape [m], independent of each other, by rejection in its bounding box
 /// from the stream; a place for which isBlocked is true is drawn again. FillError if 10,000 draws in a row find no free
 /// place.
-std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random,
-                             FunctionRef<bool(const Vec2&)> isBlocked);
-std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random);
+FROUDE_API std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random,
+                                        FunctionRef<bool(const Vec2&)> isBlocked);
+FROUDE_API std::vector<Vec2> fillRandom(const Polygon& shape, std::size_t count, RandomStream& random);
 
 /// Points that are already there (other blocks, live particles), for cutting out around them.
-class PlacedPoints {
+class FROUDE_API PlacedPoints {
  public:
   /// clearance [m] > 0: nearer than this is taken. For blocks whose lattices do not match, 0.9 spacing avoids
   /// over-dense seams; two lattices that abut at a whole spacing are not cut. FillError if it is not a positive number.

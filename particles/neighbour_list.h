@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/particles/cell_grid.h>
 
 namespace froude {
@@ -13,7 +14,7 @@ namespace froude {
 /// order of the grid's runs: the same on any number of threads. Compressed rows, in one buffer for each block of
 /// kBlockSize particles. Along periodic axes a pair is listed once, through its nearest image: take differences of
 /// positions through GridFrame::minimumImage. Allocates only where a build needs more than all before.
-class NeighbourList {
+class FROUDE_API NeighbourList {
  public:
   /// x, y: positions sorted by `grid` [m] (permuted by its order). Lists pairs with distance < radius + skin: with a
   /// skin, the lists stay complete for `radius` until two particles have together moved by more than `skin`, see

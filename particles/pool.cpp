@@ -170,9 +170,7 @@ void ParticlePool::release(ParticleHandle handle) {
   if (!tryRelease(handle)) throw PoolError(badHandleMessage(settings_, handle.slot, handle.generation));
 }
 
-bool ParticlePool::anyMarked() const {
-  return size_ > 0 && std::memchr(column(kMarked).data(), 1, size_) != nullptr;
-}
+bool ParticlePool::anyMarked() const { return size_ > 0 && std::memchr(column(kMarked).data(), 1, size_) != nullptr; }
 
 std::size_t ParticlePool::compact() {
   const std::uint8_t* marked = markedColumn();

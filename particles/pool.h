@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/assert.h>
 #include <froude/base/types.h>
 #include <froude/particles/slot_table.h>
@@ -46,7 +47,7 @@ struct ColumnInfo {
 /// AlignedArray). An index is good until the next release, compact or permute, a span until the next create, permute,
 /// reserve, purge or load; handles and column ids last. Creating and removing are not for several threads at once,
 /// except `kill`. A pool whose capacity suffices allocates nothing, whatever is created, removed and permuted.
-class ParticlePool {
+class FROUDE_API ParticlePool {
  public:
   using Initializer = std::function<void(ParticlePool&, std::uint32_t index)>;
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <froude/base/api.h>
 #include <froude/base/archive.h>
 #include <froude/fields/polygon.h>
 #include <froude/particles/pool.h>
@@ -12,7 +13,7 @@
 namespace froude {
 
 /// Polygons that swallow a particle whose centre is inside. Where sinks overlap the first one counts it.
-class SinkSet {
+class FROUDE_API SinkSet {
  public:
   /// Returns the sink's number.
   std::size_t add(Polygon shape);
@@ -41,11 +42,12 @@ class SinkSet {
 };
 
 /// Marks all particles with expires ≤ now [s] that are not marked yet; returns how many. NaN never expires, +∞ neither.
-std::size_t markExpired(ParticlePool& pool, ColumnId<double> expires, double now);
+FROUDE_API std::size_t markExpired(ParticlePool& pool, ColumnId<double> expires, double now);
 
 /// Particles that carry `value` in the column and are not marked: those of one emitter, say.
-std::size_t countWith(const ParticlePool& pool, ColumnId<std::uint32_t> column, std::uint32_t value);
+FROUDE_API std::size_t countWith(const ParticlePool& pool, ColumnId<std::uint32_t> column, std::uint32_t value);
 /// Marks the `count` oldest (by birth) of them, all if there are fewer; returns how many were marked.
-std::size_t markOldestWith(ParticlePool& pool, ColumnId<std::uint32_t> column, std::uint32_t value, std::size_t count);
+FROUDE_API std::size_t markOldestWith(ParticlePool& pool, ColumnId<std::uint32_t> column, std::uint32_t value,
+                                      std::size_t count);
 
 }  // namespace froude

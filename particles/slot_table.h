@@ -7,6 +7,7 @@
 #include <string>
 
 #include <froude/base/aligned.h>
+#include <froude/base/api.h>
 #include <froude/base/archive.h>
 #include <froude/base/error.h>
 
@@ -24,7 +25,7 @@ struct PoolSettings {
 };
 
 /// A full `Fixed` pool, a stale or doubled release, a definition that cannot be met.
-class PoolError : public Error {
+class FROUDE_API PoolError : public Error {
  public:
   using Error::Error;
 };
@@ -40,15 +41,15 @@ struct PoolCounters {
 inline constexpr std::size_t kMaxPoolCapacity = std::size_t{1} << 31;
 
 /// The words that both kinds of pool share. `checkedSettings` returns what it is given, or throws PoolError.
-PoolSettings checkedSettings(PoolSettings settings);
-std::string poolFullMessage(const PoolSettings& settings, std::size_t capacity);
-std::string badHandleMessage(const PoolSettings& settings, std::uint32_t slot, std::uint32_t generation);
+FROUDE_API PoolSettings checkedSettings(PoolSettings settings);
+FROUDE_API std::string poolFullMessage(const PoolSettings& settings, std::size_t capacity);
+FROUDE_API std::string badHandleMessage(const PoolSettings& settings, std::uint32_t slot, std::uint32_t generation);
 
 /// Hands out slot numbers. A slot's generation is odd while it is live and even while it is free, and rises with every
 /// change, so that {slot, generation} names one life of a slot; generation 0 was never handed out. Free slots form a
 /// circular list, first in, first out: a generation is reused as late as possible. All operations are O(1) unless said
 /// otherwise and allocate nothing, `grow` and `purge` excepted. Not for use from several threads at once.
-class SlotTable {
+class FROUDE_API SlotTable {
  public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFFu;
 

@@ -21,9 +21,31 @@ using VectorField = std::function<Vec2(const Vec2& x /* m */, double t /* s */)>
 /// A number that may vary in time. Called from one thread.
 using TimeFunction = std::function<double(double t /* s */)>;
 
+enum class Species { Fluid, Bullet };
+
+/// What a force callback is told about a particle. `index` is its place in the pool's columns while the callback runs:
+/// columns are read there through a const World.
+struct ForcePoint {
+  Species species;
+  std::uint32_t index;
+  Vec2 x;    // [m]
+  Vec2 v;    // [m/s]
+  double t;  // [s]
+};
+/// An acceleration [m/s²] that is added to gravity. Called from several threads at once, in no order; must be pure and
+/// must not throw.
+using ForceCallback = std::function<Vec2(const ForcePoint&)>;
+
+/// Names one life of one body, whatever is created and destroyed beside it. {0, 0} is null.
+struct BodyId {
+  std::uint32_t slot = 0;
+  std::uint32_t generation = 0;
+  bool isNull() const { return generation == 0; }
+  friend bool operator==(const BodyId&, const BodyId&) = default;
+};
+
 enum class Slip { Free, NoSlip };
 enum class Motion { Fixed, Scripted, Free };
-enum class Species { Fluid, Bullet };
 
 /// The box of the simulation. What leaves it is retired and counted.
 struct DomainDef {
@@ -95,6 +117,7 @@ struct WorldDef {
   DomainDef domain;
   Vec2 gravity{0.0, -9.81};  // [m/s²], used where `gravityField` is empty
   VectorField gravityField;
+  ForceCallback force;  // [m/s²], on top of gravity; empty: none
   std::uint64_t seed = 1;
   std::optional<double> timeStep;  // the literal sub-step [s]; empty: adaptive
   std::optional<FluidDef> fluid;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 struct ModelCard {
@@ -19,8 +21,8 @@ struct ModelCard {
 };
 
 /// All models of this build, in the order in which a scene may name them.
-std::span<const ModelCard> modelCards();
+FROUDE_API std::span<const ModelCard> modelCards();
 /// Null for an unknown name.
-const ModelCard* findModelCard(std::string_view name);
+FROUDE_API const ModelCard* findModelCard(std::string_view name);
 
 }  // namespace froude

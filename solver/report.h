@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include <froude/base/api.h>
 #include <froude/base/types.h>
 
 namespace froude {
@@ -24,10 +25,10 @@ enum class StepLimit : int {
   Undone,        // halved after a bad step
   kCount
 };
-std::string_view name(StepLimit limit);
+FROUDE_API std::string_view name(StepLimit limit);
 
 enum class Trouble : int { None, NonFinite, Displacement, Compression, EnergyGain };
-std::string_view name(Trouble trouble);
+FROUDE_API std::string_view name(Trouble trouble);
 
 /// One accepted sub-step, or the reason why none was.
 struct StepReport {
@@ -52,6 +53,7 @@ struct Ledger {
   std::uint64_t leaks = 0, crushed = 0, wallHits = 0, quarantined = 0;
   std::uint64_t retired = 0;  // left the domain
   std::uint64_t sunk = 0, expired = 0, emitted = 0, recycled = 0, refused = 0;
+  std::uint64_t added = 0, killed = 0;  // by calls between steps, after the first one
   std::array<std::uint64_t, static_cast<std::size_t>(StepLimit::kCount)> limits{};
   double maxDensityError = 0.0;   // largest compression over particles and steps
   double densityErrorTime = 0.0;  // ∫ mean compression dt [s]

@@ -32,6 +32,23 @@ struct StepContext {
   SimdTarget simd;
 };
 
+/// A particle met an obstacle.
+struct ParticleContact {
+  std::uint32_t particle;  // its index now
+  int body;                // −1: the domain
+  Vec2 point;              // [m]
+  Vec2 normal;             // outward from the obstacle
+  double approach;         // relative speed towards it before [m/s]
+  double time;             // fraction of the sub-step
+};
+
+/// Who wants to hear of contacts. Called from one thread, in an order that does not depend on threads.
+class ContactRecorder {
+ public:
+  virtual ~ContactRecorder() = default;
+  virtual void add(const ParticleContact& contact) = 0;
+};
+
 /// What particles gave to the bodies during a sub-step; index 0 is the domain, body i stands at i + 1.
 class ImpulseLedger {
  public:
@@ -47,6 +64,9 @@ class ImpulseLedger {
     e.moment += cross(at, impulse);
     work_ -= impulse.dot(surfaceVelocity);
   }
+  /// Null where nobody listens.
+  ContactRecorder* recorder() const { return recorder_; }
+  void setRecorder(ContactRecorder* recorder) { recorder_ = recorder; }
   /// Done by moving surfaces on particles [J/m].
   double work() const { return work_; }
   const Vec2& impulse(int owner) const { return entries_[static_cast<std::size_t>(owner + 1)].impulse; }
@@ -65,6 +85,7 @@ class ImpulseLedger {
   };
   std::vector<Entry> entries_;
   double work_ = 0.0;
+  ContactRecorder* recorder_ = nullptr;
 };
 
 /// Numbers of one sub-step of one model.

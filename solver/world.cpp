@@ -19,6 +19,15 @@ double reachOf(const WorldDef& def) {
   return std::max(fluid, bullet) > 0.0 ? std::max(fluid, bullet) : domain;
 }
 
+// A particle must not be its own neighbour's neighbour twice; found in a step, this would be an exception there.
+void checkPeriod(const WorldDef& def) {
+  const Vec2 size = def.domain.box.size();
+  const double least = 8.0 * def.fluid->spacing;
+  if ((def.domain.periodicX && size.x() < least) || (def.domain.periodicY && size.y() < least)) {
+    throw Error("a fluid's domain must be at least 8 spacings long along a periodic axis");
+  }
+}
+
 }  // namespace
 
 World::Impl::Impl(const WorldDef& definition)
@@ -26,10 +35,12 @@ World::Impl::Impl(const WorldDef& definition)
   if (def.domain.box.empty() || !(def.domain.box.size().minCoeff() > 0.0)) {
     throw Error("domain.box is empty; give [xmin, ymin, xmax, ymax] with min < max");
   }
+  if (!def.gravity.allFinite()) throw Error("gravity must be finite");
   if (def.timeStep && !(*def.timeStep > 0.0)) throw Error("timeStep must be a positive number of seconds");
   if (def.fluid) {
     if (!(def.fluid->spacing > 0.0)) throw Error("fluid spacing must be a positive length");
     if (!(def.fluid->density > 0.0)) throw Error("fluid density must be positive");
+    checkPeriod(def);
     fluid = makePool("fluid");
     fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);
     fluidExpires = fluid->addColumn<double>("expires", ColumnKind::State);
@@ -51,7 +62,10 @@ World::Impl::Impl(const WorldDef& definition)
     emitters.emplace_back(e, def.fluid ? def.fluid->spacing : 0.0, def.seed, k);
     anyLifetime = anyLifetime || std::isfinite(e.lifetime);
   }
-  for (const SinkDef& s : def.sinks) sinks.add(*s.shape);
+  for (std::size_t k = 0; k < def.sinks.size(); ++k) {
+    if (def.sinks[k].shape == nullptr) throw Error("sink " + std::to_string(k) + " has no shape");
+    sinks.add(*def.sinks[k].shape);
+  }
   obstacles = std::make_unique<Obstacles>(def.domain, bodies, reachOf(def));
   bodyStates.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -73,69 +87,13 @@ World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
-namespace {
-
-void addParticles(ParticlePool& pool, std::span<const Vec2> positions, std::span<const Vec2> velocities,
-                  ColumnId<double> expires) {
-  if (positions.size() != velocities.size()) throw Error("as many velocities as positions are needed");
-  pool.reserve(pool.size() + positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    pool.create();
-    const std::size_t k = pool.size() - 1;
-    pool.x()[k] = positions[i].x();
-    pool.y()[k] = positions[i].y();
-    pool.vx()[k] = velocities[i].x();
-    pool.vy()[k] = velocities[i].y();
-    pool.column(expires)[k] = kInfinity;
-  }
-}
-
-void checkPlaces(const World& world, const Box& box, std::span<const Vec2> positions) {
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!box.contains(positions[i]) || world.insideSolid(positions[i])) {
-      throw Error("particle " + std::to_string(i) + " at (" + std::to_string(positions[i].x()) + ", " +
-                  std::to_string(positions[i].y()) + ") lies inside a solid or outside the domain");
-    }
-  }
-}
-
-}  // namespace
-
-void World::addFluid(std::span<const Vec2> positions, std::span<const Vec2> velocities) {
-  if (impl_->fluid == nullptr) throw Error("this world has no fluid; set WorldDef::fluid");
-  checkPlaces(*this, impl_->def.domain.box, positions);
-  addParticles(*impl_->fluid, positions, velocities, impl_->fluidExpires);
-  ++impl_->version;
-}
-
-void World::addBullets(std::span<const Vec2> positions, std::span<const Vec2> velocities) {
-  if (impl_->bullets == nullptr) throw Error("this world has no bullets; set WorldDef::bullet");
-  checkPlaces(*this, impl_->def.domain.box, positions);
-  addParticles(*impl_->bullets, positions, velocities, impl_->bulletExpires);
-  ++impl_->version;
-}
-
 double World::time() const { return impl_->time; }
 const WorldDef& World::definition() const { return impl_->def; }
 const Ledger& World::ledger() const { return impl_->ledger; }
 const ParticlePool* World::fluid() const { return impl_->fluid.get(); }
 const ParticlePool* World::bullets() const { return impl_->bullets.get(); }
-ParticlePool* World::fluid() { return impl_->fluid.get(); }
-ParticlePool* World::bullets() { return impl_->bullets.get(); }
 double World::fluidMass() const { return impl_->fluidModel ? impl_->fluidModel->particleMass() : 0.0; }
 double World::bulletMass() const { return impl_->ballistic ? impl_->ballistic->mass() : 0.0; }
-std::size_t World::bodyCount() const { return impl_->bodies.size(); }
-const BodyState& World::body(std::size_t index) const { return impl_->bodyStates.at(index); }
-const BodyDef& World::bodyDefinition(std::size_t index) const { return impl_->def.bodies.at(index); }
-
-std::size_t World::bodyIndex(std::string_view name) const {
-  std::string known;
-  for (std::size_t i = 0; i < impl_->def.bodies.size(); ++i) {
-    if (impl_->def.bodies[i].name == name) return i;
-    if (i < 10) known += (i > 0 ? ", " : "") + impl_->def.bodies[i].name;
-  }
-  throw Error("no body is named '" + std::string(name) + "'; there are: " + (known.empty() ? "none" : known));
-}
 
 Totals World::totals(std::optional<Species> species) const {
   Totals all;
@@ -155,24 +113,16 @@ Totals World::totals(std::optional<Species> species) const {
   return all;
 }
 
-namespace {
-
-CollisionFilter fluidFilter(const WorldDef& def) {
-  return def.fluid ? CollisionFilter{def.fluid->group, def.fluid->collidesWith} : CollisionFilter{};
-}
-
-}  // namespace
-
 void World::filledFraction(std::span<const Vec2> points, std::span<double> phi) const {
   if (impl_->fluid == nullptr) {
     std::fill(phi.begin(), phi.end(), 0.0);
     return;
   }
   impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
-  const CollisionFilter filter = fluidFilter(impl_->def);
+  const CollisionFilter filter = impl_->filterOf(Species::Fluid);
+  const Obstacles& solids = impl_->solids();
   parallelFor(points.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      phi[i] = impl_->query.filledFraction(*impl_->obstacles, filter, points[i]);
+    for (std::size_t i = begin; i < end; ++i) phi[i] = impl_->query.filledFraction(solids, filter, points[i]);
   });
 }
 
@@ -192,10 +142,6 @@ Vec2 World::velocityAt(const Vec2& point) const {
           impl_->query.mean(point, [&](std::uint32_t i) { return pool.vy()[i]; })};
 }
 
-bool World::insideSolid(const Vec2& point) const {
-  return impl_->obstacles->distance(point, CollisionFilter{~0u, ~0u}).distance < 0.0;
-}
-
 std::string World::stateHash() const {
   HashingArchive hashing;
   impl_->archive(hashing);
@@ -204,7 +150,9 @@ std::string World::stateHash() const {
 
 void World::archive(Archive& a) {
   impl_->archive(a);
-  if (a.loading()) ++impl_->version;
+  if (!a.loading()) return;
+  ++impl_->version;
+  impl_->events.clear();
 }
 
 }  // namespace froude

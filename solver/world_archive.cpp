@@ -17,10 +17,10 @@ void archiveFields(Archive& a, std::string_view name, const std::array<T*, N>& f
 }
 
 void archiveLedger(Archive& a, Ledger& l) {
-  archiveFields(
-      a, "counters",
-      std::array{&l.steps, &l.substeps, &l.rejected, &l.particleSteps, &l.sweeps, &l.leaks, &l.crushed, &l.wallHits,
-                 &l.quarantined, &l.retired, &l.sunk, &l.expired, &l.emitted, &l.recycled, &l.refused});
+  archiveFields(a, "counters",
+                std::array{&l.steps, &l.substeps, &l.rejected, &l.particleSteps, &l.sweeps, &l.leaks, &l.crushed,
+                           &l.wallHits, &l.quarantined, &l.retired, &l.sunk, &l.expired, &l.emitted, &l.recycled,
+                           &l.refused, &l.added, &l.killed});
   a.bytes("limits", l.limits.data(), sizeof l.limits[0], l.limits.size());
   archiveFields(a, "sums",
                 std::array{&l.maxDensityError, &l.densityErrorTime, &l.energy0, &l.maxKinetic, &l.work, &l.dissipation,
@@ -71,6 +71,7 @@ void World::Impl::archive(Archive& a) {
   started = flag != 0;
   section(a, "bodies", [&] {
     bodies.archive(a);
+    if (a.loading()) bodyStates.resize(bodies.size());
     archiveBodyStates(a, bodyStates, flat);
   });
   if (fluid != nullptr) section(a, "fluid", [&] { fluid->archive(a); });
@@ -79,7 +80,10 @@ void World::Impl::archive(Archive& a) {
     section(a, ("emitter" + std::to_string(k)).c_str(), [&] { emitters[k].archive(a); });
   }
   if (!sinks.empty()) section(a, "sinks", [&] { sinks.archive(a); });
-  if (a.loading()) obstacles->beginStep(bodies, 0.0, 0.0);
+  if (!a.loading()) return;
+  obstacles->rebuild(bodies);
+  obstaclesStale = false;
+  edited = true;  // measured anew before the next sub-step, which finds no difference unless the caller made one
 }
 
 }  // namespace froude

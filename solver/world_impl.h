@@ -1,6 +1,7 @@
 // The inside of World, shared by the files that step it, account for it and answer questions.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <froude/particles/emitter.h>
 #include <froude/particles/sink.h>
 #include <froude/solver/bullet/ballistic.h>
+#include <froude/solver/event_log.h>
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/fluid_query.h>
 #include <froude/solver/rigid/body_set.h>
@@ -25,6 +27,18 @@ struct Balance {
   double energy() const { return kinetic + potential; }
 };
 
+/// visit(shift) for a point and its copies one period away along periodic axes; stops where visit returns true.
+template <typename Visit>
+void visitImages(const DomainDef& domain, Visit&& visit) {
+  const Vec2 period = domain.box.size();
+  const int nx = domain.periodicX ? 1 : 0, ny = domain.periodicY ? 1 : 0;
+  for (int i = -nx; i <= nx; ++i) {
+    for (int j = -ny; j <= ny; ++j) {
+      if (visit(Vec2(i * period.x(), j * period.y()))) return;
+    }
+  }
+}
+
 struct World::Impl {
   explicit Impl(const WorldDef& definition);
 
@@ -34,11 +48,32 @@ struct World::Impl {
   void advance(double dt, StepStats& stats);
   void judge(StepStats& stats, double dt);
   void retire();
+  void tellSinks(const ParticlePool& pool);
   void emit(double dt);
   void publishBodies(double dt);
   void account(const StepStats& stats, double dt);
   bool needsUndo() const { return fluidModel != nullptr; }
   void archive(Archive& a);
+
+  // The caller's force (world_force.cpp).
+  void feelForce();
+  void pushByForce(double dt, StepStats& stats);
+  void finishForce(double dt, StepStats& stats);
+  double accelerationScale() const { return gravityScale + forceScale; }
+
+  // What callers change between steps (world_edit.cpp).
+  void admitEdits();
+  void bodiesChanged();
+  const Obstacles& solids() const;
+  std::size_t requireBody(BodyId id) const;
+  void crushUnder(std::size_t body);
+  std::size_t dropMarked(ParticlePool& pool, std::uint64_t& counter);
+  std::size_t bookRemoved(const ParticlePool& pool, std::size_t count, std::uint64_t& counter);
+  ParticlePool& requirePool(Species species) const;
+  CollisionFilter filterOf(Species species) const;
+  double massOf(const ParticlePool& pool) const {
+    return &pool == fluid.get() ? fluidModel->particleMass() : ballistic->mass();
+  }
 
   // Accounts (world_account.cpp).
   void openAccounts();
@@ -59,6 +94,7 @@ struct World::Impl {
   std::unique_ptr<FluidModel> fluidModel;
   std::unique_ptr<Ballistic> ballistic;
   std::unique_ptr<Obstacles> obstacles;
+  mutable bool obstaclesStale = false;  // bodies came, went or were put elsewhere
   std::vector<Emitter> emitters;
   SinkSet sinks;
   MemorySnapshot snapshot;
@@ -74,7 +110,12 @@ struct World::Impl {
   bool anyLifetime = false;
   bool insideStep = false;    // substep() is called by step(), which counts
   bool started = false;       // the accounts hold the start's energy and momentum
+  bool edited = false;        // particles may differ from those that `present` was taken of
   std::uint64_t version = 0;  // of the particles' places, for queries between steps
+  EventLog events;
+  // The force's acceleration at the start of the sub-step, and at its end [m/s²].
+  std::array<AlignedArray<double>, 2> fluidPush, bulletPush, bulletEndPush;
+  double forceScale = 0.0;  // its largest [m/s²]
   mutable FluidQuery query;
 };
 

@@ -18,12 +18,16 @@ StepReport World::substep(double maxDt) {
   Impl& w = *impl_;
   StepReport report;
   w.ledger.steps += w.insideStep ? 0 : 1;
+  if (!w.insideStep) w.events.clear();
   w.quarantine();
+  w.admitEdits();
   w.openAccounts();
+  w.feelForce();
   StepBound bound = w.chooseStep(maxDt);
   if (w.needsUndo()) w.snapshot.save([&](Archive& a) { w.archive(a); });
   for (int halving = 0;; ++halving) {
     StepStats stats;
+    w.events.beginAttempt();
     w.advance(bound.dt, stats);
     w.judge(stats, bound.dt);
     if (stats.trouble == Trouble::None || !w.needsUndo()) {
@@ -36,6 +40,7 @@ StepReport World::substep(double maxDt) {
       break;
     }
     w.snapshot.load([&](Archive& a) { w.archive(a); });
+    w.events.dropAttempt();
     ++report.rejected;
     if (w.def.timeStep || halving == w.def.limits.halvings) {
       report.trouble = stats.trouble;
@@ -54,9 +59,10 @@ StepReport World::substep(double maxDt) {
 
 StepReport World::step(double dt) {
   StepReport total;
-  if (!(dt > 0.0)) return total;
+  if (!(dt > 0.0) || !std::isfinite(dt)) return total;
   ++impl_->ledger.steps;
   impl_->insideStep = true;
+  impl_->events.clear();
   const double end = time() + dt;
   // The last sub-step ends at the end to rounding; what is left is then below the resolution of time.
   while (end - time() > 1e-12 * std::max(1.0, end)) {
@@ -79,10 +85,10 @@ StepBound World::Impl::chooseStep(double maxDt) const {
   if (def.timeStep) return {*def.timeStep, StepLimit::Literal};
   StepBound bound{kFreeStep, StepLimit::Requested};
   if (fluidModel != nullptr) {
-    const StepBound fluidBound = fluidModel->stepBound(*fluid, present.maxSpeed, gravityScale);
+    const StepBound fluidBound = fluidModel->stepBound(*fluid, present.maxSpeed, accelerationScale());
     bound.tighten(fluidBound.dt, fluidBound.limit);
   }
-  if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, gravityScale), StepLimit::Bullet);
+  if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, accelerationScale()), StepLimit::Bullet);
   if (bodies.anyMoves()) {
     const double spin = bodies.maxSpin();
     if (spin > 0.0) bound.tighten(kLargestTurn / spin, StepLimit::Spin);
@@ -124,12 +130,22 @@ void World::Impl::quarantine() {
 void World::Impl::advance(double dt, StepStats& stats) {
   bodies.beginStep(time, dt);
   const double reach = (fluidModel != nullptr ? fluidModel->supportRadius() : 0.0) +
-                       (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * gravityScale;
+                       (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * accelerationScale();
   obstacles->beginStep(bodies, dt, 2.0 * reach);
   impulses.reset(bodies.size());
   const StepContext context{time, dt, gravity, *obstacles, def.simd};
-  if (fluidModel != nullptr) fluidModel->advance(context, *fluid, impulses, stats);
-  if (ballistic != nullptr) ballistic->advance(context, *bullets, impulses, stats);
+  pushByForce(dt, stats);
+  if (fluidModel != nullptr) {
+    impulses.setRecorder(events.listenTo(Species::Fluid, *fluid, bodies, time, dt));
+    fluidModel->advance(context, *fluid, impulses, stats);
+    events.finishSpecies();
+  }
+  if (ballistic != nullptr) {
+    impulses.setRecorder(events.listenTo(Species::Bullet, *bullets, bodies, time, dt));
+    ballistic->advance(context, *bullets, impulses, stats);
+    events.finishSpecies();
+  }
+  finishForce(dt, stats);
   publishBodies(dt);
   bodies.finishStep(dt);
   time += dt;
@@ -223,6 +239,16 @@ void World::Impl::emit(double dt) {
   }
 }
 
+void World::Impl::tellSinks(const ParticlePool& pool) {
+  if (!events.settings.sinks) return;
+  const Species species = &pool == fluid.get() ? Species::Fluid : Species::Bullet;
+  for (std::uint32_t i = 0; i < pool.size(); ++i) {
+    if (!pool.isMarked(i)) continue;
+    const Vec2 at(pool.x()[i], pool.y()[i]);
+    events.addSink({species, pool.handleAt(i), static_cast<std::uint32_t>(sinks.sinkAt(at)), at, time});
+  }
+}
+
 void World::Impl::retire() {
   auto clean = [&](ParticlePool& pool, double mass, ColumnId<double> expires) {
     std::uint64_t crushed = 0;
@@ -239,7 +265,10 @@ void World::Impl::retire() {
       }
     });
     remove(pool, mass, ledger.retired);
-    if (!sinks.empty() && sinks.mark(pool) > 0) remove(pool, mass, ledger.sunk);
+    if (!sinks.empty() && sinks.mark(pool) > 0) {
+      tellSinks(pool);
+      remove(pool, mass, ledger.sunk);
+    }
     if (anyLifetime && markExpired(pool, expires, time) > 0) remove(pool, mass, ledger.expired);
   };
   if (fluid != nullptr) clean(*fluid, fluidModel->particleMass(), fluidExpires);

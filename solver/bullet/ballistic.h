@@ -1,6 +1,7 @@
 // Bullets: no interaction among themselves, exact collision with the polygons, bounce and friction.
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/particles/pool.h>
 #include <froude/solver/coupling/contact_log.h>
 #include <froude/solver/step_context.h>
@@ -8,7 +9,7 @@
 namespace froude {
 
 /// Largest sub-step of bullets [s]: the chord of a step departs from the parabola by at most a tenth of the radius.
-double bulletStepBound(const BulletDef& def, double gravity);
+FROUDE_API double bulletStepBound(const BulletDef& def, double gravity);
 
 /// Moves the bullets of a pool.
 class Ballistic {

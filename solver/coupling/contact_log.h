@@ -14,9 +14,13 @@ namespace froude {
 /// One contact: what a particle's velocity changed by.
 struct LoggedContact {
   int body = -1;
+  std::uint32_t particle = 0;             // index at the time of the log
   double atX = 0.0, atY = 0.0;            // [m]
   double changeX = 0.0, changeY = 0.0;    // [m/s]
   double surfaceX = 0.0, surfaceY = 0.0;  // velocity of the obstacle's surface there [m/s]
+  double normalX = 0.0, normalY = 0.0;
+  double approach = 0.0;  // [m/s]
+  double time = 0.0;      // fraction of the sub-step
 };
 
 /// Lists of contacts, one for each block of kBlockSize particles. Memory is reused.
@@ -51,11 +55,17 @@ class ContactLog {
     const PathResult::Impulse& last = path.impulses[static_cast<std::size_t>(path.contacts - 1)];
     add(particle, last, rest);
   }
-  /// Books what the particles, each of `mass` [kg/m], gave to the obstacles.
+  /// Books what the particles, each of `mass` [kg/m], gave to the obstacles, and tells the recorder if there is one.
+  /// Precondition: the particles have the indices that they had when they were logged.
   void book(double mass, ImpulseLedger& impulses) const {
     forEach([&](const LoggedContact& c) {
       impulses.add(c.body, {c.atX, c.atY}, -mass * Vec2(c.changeX, c.changeY), {c.surfaceX, c.surfaceY});
     });
+    if (ContactRecorder* recorder = impulses.recorder()) {
+      forEach([&](const LoggedContact& c) {
+        recorder->add({c.particle, c.body, {c.atX, c.atY}, {c.normalX, c.normalY}, c.approach, c.time});
+      });
+    }
   }
   /// visit(const LoggedContact&) in block order.
   template <typename Visit>
@@ -72,8 +82,9 @@ class ContactLog {
 
  private:
   void add(std::size_t particle, const PathResult::Impulse& p, const Vec2& change) {
-    blocks_[particle / kBlockSize].push_back(
-        {p.body, p.at.x(), p.at.y(), change.x(), change.y(), p.surfaceVelocity.x(), p.surfaceVelocity.y()});
+    blocks_[particle / kBlockSize].push_back({p.body, static_cast<std::uint32_t>(particle), p.at.x(), p.at.y(),
+                                              change.x(), change.y(), p.surfaceVelocity.x(), p.surfaceVelocity.y(),
+                                              p.normal.x(), p.normal.y(), p.approach, p.time});
   }
 
   std::vector<AlignedArray<LoggedContact>> blocks_;

@@ -8,43 +8,65 @@ constexpr int kCoarseCells =
 
 }  // namespace
 
-Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band) : domain_(domain) {
-  std::vector<PlacedPolygon> placed;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyDef& def = bodies.definition(i);
-    surfaces_.push_back({def.surfaceVelocity,
-                         def.friction,
-                         def.restitution,
-                         bodies.moves(i) ? static_cast<int>(moving_.size()) : -1,
-                         {def.group, def.collidesWith},
-                         def.slip.value_or(domain.slip)});
-    const Transform pose = bodies.motion(i).transform();
-    if (bodies.moves(i)) {
-      moving_.push_back({static_cast<int>(i),
-                         std::make_unique<DistanceField>(*def.shape, band),
-                         {},
-                         pose,
-                         {},
-                         def.group,
-                         def.collidesWith});
-    } else {
-      placed.push_back({def.shape.get(), pose, static_cast<std::int32_t>(i), def.group, def.collidesWith});
-    }
-  }
-  anySticks_ = sticks(-1);
-  for (std::size_t i = 0; i < bodies.size(); ++i) anySticks_ = anySticks_ || sticks(static_cast<int>(i));
-  DomainWalls walls{domain.box, domain.closed};
-  if (domain.periodicX) walls.closed[0] = walls.closed[1] = false;
-  if (domain.periodicY) walls.closed[2] = walls.closed[3] = false;
-  fixed_ = std::make_unique<WorldField>(placed, walls, band);
-
+Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band) : domain_(domain), band_(band) {
   const Vec2 size = domain.box.size();
   coarseCell_ = std::max(size.x(), size.y()) / kCoarseCells;
   coarseOrigin_ = domain.box.min;
   coarseNx_ = std::max(1, static_cast<int>(std::ceil(size.x() / coarseCell_)));
   coarseNy_ = std::max(1, static_cast<int>(std::ceil(size.y() / coarseCell_)));
   coarseStart_.resize(static_cast<std::size_t>(coarseNx_ * coarseNy_) + 1);
+  rebuild(bodies);
+}
+
+void Obstacles::rebuild(const BodySet& bodies) {
+  std::vector<Baked> fixed;
+  std::vector<Moving> before = std::move(moving_);
+  moving_.clear();
+  surfaces_.clear();
+  auto fieldOf = [&](const std::shared_ptr<const Polygon>& shape) {
+    for (const std::vector<Moving>* known : {&before, &moving_}) {
+      for (const Moving& m : *known) {
+        if (m.shape == shape) return m.field;
+      }
+    }
+    return std::make_shared<const DistanceField>(*shape, band_);
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyDef& def = bodies.definition(i);
+    const BodyMotion& motion = bodies.motion(i);
+    surfaces_.push_back({def.surfaceVelocity,
+                         def.friction,
+                         def.restitution,
+                         bodies.moves(i) ? static_cast<int>(moving_.size()) : -1,
+                         {def.group, def.collidesWith},
+                         def.slip.value_or(domain_.slip)});
+    const auto number = static_cast<std::int32_t>(i);
+    if (bodies.moves(i)) {
+      moving_.push_back(
+          {number, def.shape, fieldOf(def.shape), {}, motion.transform(), {}, def.group, def.collidesWith});
+    } else {
+      fixed.push_back({def.shape, motion.position, motion.angle, number, def.group, def.collidesWith});
+    }
+  }
+  anySticks_ = sticks(-1);
+  for (std::size_t i = 0; i < bodies.size(); ++i) anySticks_ = anySticks_ || sticks(static_cast<int>(i));
+  if (fixed_ == nullptr || fixed != baked_) bake(fixed);
+  std::fill(coarseStart_.begin(), coarseStart_.end(), 0u);
+  coarseBodies_.resize(0);
   beginStep(bodies, 0.0, 0.0);
+}
+
+void Obstacles::bake(const std::vector<Baked>& fixed) {
+  std::vector<PlacedPolygon> placed;
+  for (const Baked& b : fixed) {
+    placed.push_back({b.shape.get(), Transform::of(b.position, b.angle), b.body, b.group, b.collidesWith});
+  }
+  DomainWalls walls{domain_.box, domain_.closed};
+  if (domain_.periodicX) walls.closed[0] = walls.closed[1] = false;
+  if (domain_.periodicY) walls.closed[2] = walls.closed[3] = false;
+  fixed_ = std::make_unique<WorldField>(placed, walls, band_);
+  baked_ = fixed;
+  ++fixedVersion_;
 }
 
 void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {

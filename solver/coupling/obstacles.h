@@ -32,6 +32,11 @@ class Obstacles {
  public:
   /// band [m]: reach of exact distances, at least the support radius and the largest particle radius.
   Obstacles(const DomainDef& domain, const BodySet& bodies, double band);
+  /// For bodies that came, went or were put elsewhere: as constructed anew, but fields that are the same are kept.
+  /// Cost: that of the constructor for what is new, a comparison for the rest.
+  void rebuild(const BodySet& bodies);
+  /// Rises whenever the fixed obstacles have changed: what is kept of them elsewhere is to be made anew.
+  std::uint64_t fixedVersion() const { return fixedVersion_; }
 
   /// Poses at the start of the sub-step and their motion during dt [s]. `reach` [m]: no query of this sub-step looks
   /// farther than this beyond a moving body. Cost: moving bodies × cells that they sweep; nothing if none moves.
@@ -60,6 +65,18 @@ class Obstacles {
   };
   Distance distance(const Vec2& x, const CollisionFilter& filter) const;
 
+  /// The first boundary on the straight line from → to, with moving bodies at the end of the sub-step. Along periodic
+  /// axes the copies of a body one period away are met too.
+  struct RayHit {
+    bool hit = false;
+    double share = 1.0;  // of the line
+    Vec2 point{0, 0};    // [m]
+    Vec2 normal{0, 0};
+    int body = -1;
+    bool startedInside = false;
+  };
+  RayHit ray(const Vec2& from, const Vec2& to, const CollisionFilter& filter) const;
+
   /// Velocity of a body's material (its belt left out) at x during the sub-step; 0 for the domain (−1) [m/s].
   Vec2 velocityAt(int body, const Vec2& x) const;
 
@@ -80,7 +97,8 @@ class Obstacles {
  private:
   struct Moving {
     int body;
-    std::unique_ptr<DistanceField> field;
+    std::shared_ptr<const Polygon> shape;
+    std::shared_ptr<const DistanceField> field;
     RigidMotion motion;
     Transform end;
     Box swept;  // the body's box over the sub-step [m]
@@ -97,8 +115,22 @@ class Obstacles {
   template <typename Visit>
   void forEachImage(const Vec2& x, double margin, Visit&& visit) const;
 
+  // What a fixed body is baked from; equal ones make an equal field.
+  struct Baked {
+    std::shared_ptr<const Polygon> shape;
+    Vec2 position;
+    double angle;
+    std::int32_t body;
+    std::uint32_t group, collidesWith;
+    bool operator==(const Baked&) const = default;
+  };
+  void bake(const std::vector<Baked>& fixed);
+
   DomainDef domain_;
+  double band_;
   std::unique_ptr<WorldField> fixed_;
+  std::vector<Baked> baked_;
+  std::uint64_t fixedVersion_ = 0;
   struct Surface {
     double velocity, friction, restitution;
     int moving;  // index into moving_, −1 for a fixed body

@@ -41,8 +41,14 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
     t = hit.time;
     const bool last = result.contacts == kMaxBounces;
     if (last) velocity = hit.surfaceVelocity;
-    result.impulses[static_cast<std::size_t>(result.contacts++)] = {hit.body, at - disc.radius * hit.normal,
-                                                                    velocity - before, hit.surfaceVelocity, t};
+    result.impulses[static_cast<std::size_t>(result.contacts++)] = {
+        hit.body,
+        at - disc.radius * hit.normal,
+        velocity - before,
+        hit.surfaceVelocity,
+        t,
+        hit.normal,
+        std::max(0.0, (hit.surfaceVelocity - before).dot(hit.normal))};
     if (last) {
       // Rest at the last contact and go with it; another obstacle in the way means that there is no free place.
       const Vec2 carried = at + (1.0 - t) * dt * velocity;

@@ -25,12 +25,15 @@ struct PathResult {
   Vec2 v{0, 0};  // velocity at the end [m/s]
   int contacts = 0;
   bool crushed = false;  // no free place: squeezed between bodies
+  // Left without values until there is a contact: most paths have none, and there are many paths.
   struct Impulse {
-    int body = -1;
-    Vec2 at{0, 0};               // contact point [m]
-    Vec2 change{0, 0};           // of the particle's velocity [m/s]
-    Vec2 surfaceVelocity{0, 0};  // of the obstacle there [m/s]
-    double time = 0.0;           // fraction of the sub-step at which it happened
+    int body;
+    Vec2 at;               // contact point [m]
+    Vec2 change;           // of the particle's velocity [m/s]
+    Vec2 surfaceVelocity;  // of the obstacle there [m/s]
+    double time;           // fraction of the sub-step at which it happened
+    Vec2 normal;           // outward from the obstacle
+    double approach;       // of the particle towards the surface before [m/s], ≥ 0
   };
   std::array<Impulse, kMaxBounces + 1> impulses;  // the first `contacts`
 };

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include <froude/base/api.h>
 #include <froude/particles/pool.h>
 #include <froude/solver/step_context.h>
 
@@ -34,6 +35,6 @@ class FluidModel {
 };
 
 /// Makes the model of that name and adds its columns to the pool. Throws Error for an unknown name.
-std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
+FROUDE_API std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
 
 }  // namespace froude

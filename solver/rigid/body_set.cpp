@@ -1,5 +1,7 @@
 #include <froude/solver/rigid/body_set.h>
 
+#include <froude/solver/rigid/body_record.h>
+
 namespace froude {
 namespace {
 
@@ -24,22 +26,98 @@ void scriptMeans(const std::vector<ScriptPiece>& script, double t, double dt, Bo
 
 }  // namespace
 
-BodySet::BodySet(std::vector<BodyDef> definitions) : definitions_(std::move(definitions)) {
-  for (const BodyDef& def : definitions_) {
-    if (def.shape == nullptr) throw Error("body '" + def.name + "' has no shape");
-    if (def.motion == Motion::Free)
-      throw Error("body '" + def.name + "': free bodies are not in this version; use fixed or scripted");
-    BodyMotion motion{def.position, def.angle, {0.0, 0.0}, 0.0};
-    if (def.motion == Motion::Scripted && def.script.empty()) {
-      motion.velocity = def.velocity;
-      motion.spin = def.spin;
-    }
-    motions_.push_back(motion);
-    double radius = 0.0;
-    for (const Vec2& v : def.shape->vertices()) radius = std::max(radius, v.norm());
-    radius_.push_back(radius);
-    anyMoves_ = anyMoves_ || def.motion == Motion::Scripted;
+void BodySet::check(const BodyDef& def) {
+  auto refuse = [&](const std::string& why) { throw Error("body '" + def.name + "' " + why); };
+  if (def.shape == nullptr) refuse("has no shape");
+  if (def.motion == Motion::Free) refuse("is free: free bodies are not in this version; use fixed or scripted");
+  if (!def.position.allFinite() || !std::isfinite(def.angle)) refuse("has a pose that is not finite");
+  if (!def.velocity.allFinite() || !std::isfinite(def.spin) || !std::isfinite(def.surfaceVelocity)) {
+    refuse("has a velocity that is not finite");
   }
+  if (!(def.friction >= 0.0) || !(def.restitution >= 0.0)) refuse("needs friction and restitution of at least 0");
+}
+
+BodySet::BodySet(std::vector<BodyDef> definitions) : originals_(std::move(definitions)) {
+  for (const BodyDef& def : originals_) {
+    check(def);
+    const auto slot = static_cast<std::uint32_t>(generations_.size());
+    generations_.push_back(1);
+    append(def, slot);
+  }
+  reindex();
+}
+
+void BodySet::append(BodyDef def, std::uint32_t slot) {
+  BodyMotion motion{def.position, def.angle, {0.0, 0.0}, 0.0};
+  if (def.motion == Motion::Scripted && def.script.empty()) {
+    motion.velocity = def.velocity;
+    motion.spin = def.spin;
+  }
+  double radius = 0.0;
+  for (const Vec2& v : def.shape->vertices()) radius = std::max(radius, v.norm());
+  motions_.push_back(motion);
+  radius_.push_back(radius);
+  slots_.push_back(slot);
+  definitions_.push_back(std::move(def));
+}
+
+// What follows from definitions and slots.
+void BodySet::reindex() {
+  indexOfSlot_.resize(generations_.size());
+  records_.clear();
+  anyMoves_ = false;
+  for (std::size_t i = 0; i < size(); ++i) {
+    indexOfSlot_[slots_[i]] = static_cast<std::uint32_t>(i);
+    if (!isOriginal(slots_[i])) writeBodyRecord(definitions_[i], &records_);
+    anyMoves_ = anyMoves_ || moves(i);
+  }
+}
+
+std::optional<std::size_t> BodySet::indexOf(BodyId id) const {
+  const bool live =
+      id.slot < generations_.size() && (id.generation & 1u) != 0 && generations_[id.slot] == id.generation;
+  return live ? std::optional<std::size_t>(indexOfSlot_[id.slot]) : std::nullopt;
+}
+
+BodyId BodySet::add(BodyDef def) {
+  check(def);
+  std::uint32_t slot = 0;
+  if (freeSlots_.empty()) {
+    slot = static_cast<std::uint32_t>(generations_.size());
+    generations_.push_back(0);
+  } else {
+    slot = freeSlots_.front();
+    freeSlots_.erase(freeSlots_.begin());
+  }
+  ++generations_[slot];
+  const bool moving = def.motion == Motion::Scripted;
+  append(std::move(def), slot);
+  indexOfSlot_.resize(generations_.size());
+  indexOfSlot_[slot] = static_cast<std::uint32_t>(size() - 1);
+  writeBodyRecord(definitions_.back(), &records_);
+  anyMoves_ = anyMoves_ || moving;
+  return {slot, generations_[slot]};
+}
+
+void BodySet::remove(std::size_t i) {
+  const auto at = static_cast<std::ptrdiff_t>(i);
+  ++generations_[slots_[i]];
+  freeSlots_.push_back(slots_[i]);
+  definitions_.erase(definitions_.begin() + at);
+  motions_.erase(motions_.begin() + at);
+  radius_.erase(radius_.begin() + at);
+  slots_.erase(slots_.begin() + at);
+  reindex();
+}
+
+void BodySet::place(std::size_t i, const Vec2& position, double angle) {
+  motions_[i].position = position;
+  motions_[i].angle = angle;
+}
+
+void BodySet::setVelocity(std::size_t i, const Vec2& velocity, double spin) {
+  motions_[i].velocity = velocity;
+  motions_[i].spin = spin;
 }
 
 void BodySet::beginStep(double t, double dt) {
@@ -72,10 +150,56 @@ double BodySet::maxSpin() const {
   return spin;
 }
 
+void BodySet::restore(std::span<const std::uint32_t> slots, const std::vector<std::uint32_t>& generations,
+                      std::span<const std::byte> records) {
+  // Another set until all is read, so that an error leaves this one as it was.
+  BodySet loaded({});
+  loaded.originals_ = originals_;
+  loaded.generations_ = generations;
+  for (const std::uint32_t slot : slots) {
+    if (slot >= generations.size() || (generations[slot] & 1u) == 0) throw Error("saved bodies: the state is damaged");
+    if (loaded.isOriginal(slot)) {
+      loaded.append(originals_[slot], slot);
+      continue;
+    }
+    BodyRecord record = readBodyRecord(records);
+    if (record.scriptPieces > 0) {
+      const std::optional<std::size_t> here = indexOf({slot, generations[slot]});
+      if (!here || definitions_[*here].script.size() != record.scriptPieces) {
+        throw Error("body '" + record.definition.name +
+                    "' was created by a call and has a script, which is a function and is not saved; create it here "
+                    "before the state is loaded");
+      }
+      record.definition.script = definitions_[*here].script;
+    }
+    records = records.subspan(record.size);
+    loaded.append(std::move(record.definition), slot);
+  }
+  definitions_ = std::move(loaded.definitions_);
+  motions_ = std::move(loaded.motions_);
+  radius_ = std::move(loaded.radius_);
+  slots_ = std::move(loaded.slots_);
+  generations_ = generations;
+  reindex();
+}
+
 void BodySet::archive(Archive& a) {
-  const std::size_t n = a.count("count", motions_.size());
-  if (n != motions_.size())
-    throw Error("the saved state has " + std::to_string(n) + " bodies, this world " + std::to_string(motions_.size()));
+  const std::size_t originals = a.count("originals", originals_.size());
+  if (originals != originals_.size()) {
+    throw Error("the saved state began with " + std::to_string(originals) + " bodies, this world with " +
+                std::to_string(originals_.size()));
+  }
+  loadedSlots_ = slots_;
+  loadedGenerations_ = generations_;
+  loadedRecords_ = records_;
+  a.array("slots", loadedSlots_);
+  a.array("generations", loadedGenerations_);
+  a.array("created", loadedRecords_);
+  if (a.loading() && (loadedSlots_ != slots_ || loadedGenerations_ != generations_ || loadedRecords_ != records_)) {
+    restore(loadedSlots_, loadedGenerations_, loadedRecords_);
+  }
+  a.array("free", freeSlots_);
+  const std::size_t n = size();
   constexpr std::size_t kFields = 6;
   flat_.resize(kFields * n);
   for (std::size_t i = 0; i < n; ++i) {

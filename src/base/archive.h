@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <froude/base/aligned.h>
+#include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/hash.h>
 
@@ -16,7 +17,7 @@ namespace froude {
 /// Visits named values, in a fixed order. A class with state has `void archive(Archive&)` that passes every value on
 /// which its future depends; names are unique within one archive (`section` prefixes them). Loading into an object that
 /// was built from other definitions is an Error that names the value.
-class Archive {
+class FROUDE_API Archive {
  public:
   virtual ~Archive() = default;
   virtual bool loading() const = 0;
@@ -53,7 +54,7 @@ class Archive {
 };
 
 /// Keeps a state in memory: the undoing of a bad step. Buffers are reused, so a steady step allocates nothing.
-class MemorySnapshot {
+class FROUDE_API MemorySnapshot {
  public:
   /// Saves through `visit(Archive&)`, replacing what was kept.
   template <typename Visit>
@@ -101,7 +102,7 @@ class MemorySnapshot {
 };
 
 /// Hashes a state while pretending to save it.
-class HashingArchive final : public Archive {
+class FROUDE_API HashingArchive final : public Archive {
  public:
   bool loading() const override { return false; }
   void bytes(std::string_view, void* data, std::size_t elementSize, std::size_t n) override {

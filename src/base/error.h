@@ -4,10 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 /// Base of every exception that Froude throws; `what()` says what is wrong and what would be right.
-class Error : public std::runtime_error {
+class FROUDE_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

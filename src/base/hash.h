@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <string>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 /// Streaming 64-bit hash of blocks of bytes. Not cryptographic. The result depends on the blocks and their order; each
 /// call of `add` is one block and mixes in its length.
-class StateHash {
+class FROUDE_API StateHash {
  public:
   void add(const void* data, std::size_t bytes);
   template <typename T>

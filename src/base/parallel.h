@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 /// A non-owning reference to a callable: no allocation, no template in the source file behind it.
@@ -39,17 +41,17 @@ constexpr std::size_t blockCount(std::size_t count, std::size_t blockSize = kBlo
 /// Calls body(begin, end) once for each block of [0, count). Blocks depend on blockSize only, never on the number of
 /// threads; their order is not defined. Runs in the caller's arena; with one thread, or one block, in the calling
 /// thread. Every worker computes with denormals flushed and rounding to nearest. No allocation of ours.
-void parallelFor(std::size_t count, std::size_t blockSize, FunctionRef<void(std::size_t, std::size_t)> body);
+FROUDE_API void parallelFor(std::size_t count, std::size_t blockSize, FunctionRef<void(std::size_t, std::size_t)> body);
 
 inline void parallelFor(std::size_t count, FunctionRef<void(std::size_t, std::size_t)> body) {
   parallelFor(count, kBlockSize, body);
 }
 
 /// Sum of body(begin, end) over the blocks, added in block order: the same bits on any number of threads.
-double parallelSum(std::size_t count, FunctionRef<double(std::size_t, std::size_t)> body);
+FROUDE_API double parallelSum(std::size_t count, FunctionRef<double(std::size_t, std::size_t)> body);
 
 /// Largest body(begin, end) over the blocks; `lowest` for count = 0. A NaN from any block is returned as NaN.
-double parallelMax(std::size_t count, double lowest, FunctionRef<double(std::size_t, std::size_t)> body);
+FROUDE_API double parallelMax(std::size_t count, double lowest, FunctionRef<double(std::size_t, std::size_t)> body);
 
 /// The parts body(begin, end) of fixed blocks, joined in block order by join(Part, Part) → Part, from `start` on: the
 /// same bits on any number of threads. For several sums and extremes in one pass. No allocation.
@@ -67,10 +69,10 @@ Part reduceBlocks(std::size_t count, const Part& start, Body&& body, Join&& join
 }
 
 /// Threads that a loop may use here: the concurrency of the arena of the caller.
-int concurrency();
+FROUDE_API int concurrency();
 
 /// Flushes denormals and rounds to nearest in the current thread until it goes out of scope.
-class ScopedFloatMode {
+class FROUDE_API ScopedFloatMode {
  public:
   ScopedFloatMode();
   ~ScopedFloatMode();

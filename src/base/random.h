@@ -4,16 +4,18 @@
 #include <array>
 #include <cstdint>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 /// Philox-4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011): four 32-bit words of the
 /// counter's block under the key. Passes the known-answer test of its authors.
-std::array<std::uint32_t, 4> philox(const std::array<std::uint32_t, 4>& counter,
-                                    const std::array<std::uint32_t, 2>& key);
+FROUDE_API std::array<std::uint32_t, 4> philox(const std::array<std::uint32_t, 4>& counter,
+                                               const std::array<std::uint32_t, 2>& key);
 
 /// Random numbers of one stream (an emitter, a block of bullets, a test). Value n is the same however it is reached.
 /// State to be saved: the counter alone.
-class RandomStream {
+class FROUDE_API RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream) : seed_(seed), stream_(stream) {}
 

@@ -5,18 +5,20 @@
 #include <string_view>
 #include <vector>
 
+#include <froude/base/api.h>
+
 namespace froude {
 
 /// Targets that every x86-64 build contains; `Scalar` is plain C++ and runs anywhere.
 enum class SimdTarget : int { Scalar = 0, Sse4 = 1, Avx2 = 2, Avx3 = 3 };
 
 /// "scalar", "sse4", "avx2", "avx3".
-std::string_view name(SimdTarget target);
+FROUDE_API std::string_view name(SimdTarget target);
 /// Inverse of `name`; empty for an unknown word.
-std::optional<SimdTarget> simdTarget(std::string_view name);
+FROUDE_API std::optional<SimdTarget> simdTarget(std::string_view name);
 /// Targets that this build holds and this processor runs, slowest first.
-std::vector<SimdTarget> supportedSimdTargets();
+FROUDE_API std::vector<SimdTarget> supportedSimdTargets();
 /// The last of `supportedSimdTargets`.
-SimdTarget bestSimdTarget();
+FROUDE_API SimdTarget bestSimdTarget();
 
 }  // namespace froude

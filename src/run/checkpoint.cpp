@@ -11,7 +11,7 @@
 namespace froude::run {
 namespace {
 
-constexpr const char* kFormat = "1";
+constexpr const char* kFormat = "2";
 
 using Json = nlohmann::json;
 

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from tree import read, report, tracked_files
+from tree import read, report, shell_blocks, tracked_files
 
 SHORT = "0.02"  # simulated seconds: enough to see that a command works
 LIMIT = 300  # seconds, after which a command counts as hanging
@@ -21,20 +21,21 @@ ENVIRONMENT = re.compile(r"^[A-Z_]+=\S*$")
 
 
 def shell_lines(text):
-    """Pairs of line number and command of all ```sh blocks; a backslash joins lines."""
-    inside, pending, start = False, "", 0
-    for number, line in enumerate(text.splitlines(), start=1):
-        if line.strip().startswith("```"):
-            inside = line.strip() == "```sh"
+    """Pairs of line number and command of all ```sh blocks; a backslash joins lines. Blocks that build the programs in
+    tests/consumer/ are left out: the tests there run them whole."""
+    for first, block in shell_blocks(text):
+        if "tests/consumer/" in block:
             continue
-        if not inside or not line.strip() or line.strip().startswith("#"):
-            continue
-        start = start if pending else number
-        if line.rstrip().endswith("\\"):
-            pending += line.rstrip()[:-1] + " "
-            continue
-        yield start, (pending + line).strip()
-        pending = ""
+        pending, start = "", 0
+        for number, line in enumerate(block.splitlines(), start=first):
+            if not line.strip() or line.strip().startswith("#"):
+                continue
+            start = start if pending else number
+            if line.rstrip().endswith("\\"):
+                pending += line.rstrip()[:-1] + " "
+                continue
+            yield start, (pending + line).strip()
+            pending = ""
 
 
 class Judge:

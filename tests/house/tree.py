@@ -37,6 +37,18 @@ def lines_of(root, path):
     return [] if text is None else list(enumerate(text.splitlines(), start=1))
 
 
+def shell_blocks(text):
+    """Pairs of the number of the first line and the text of all ```sh blocks of a document."""
+    inside, block, start = False, [], 0
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.strip().startswith("```"):
+            if inside:
+                yield start, "\n".join(block)
+            inside, block, start = line.strip() == "```sh", [], number + 1
+        elif inside:
+            block.append(line)
+
+
 def is_cpp(path):
     return path.endswith((".h", ".cpp"))
 
