@@ -24,6 +24,8 @@ Obstacles::Obstacles(const DomainDef& domain, const BodySet& bodies, double band
                          {},
                          pose,
                          {},
+                         pose,
+                         0.0,
                          def.group,
                          def.collidesWith});
     } else {
@@ -62,6 +64,8 @@ void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {
     }
     const double halfTurn = std::min(0.5 * std::abs(motion.spin) * dt, kPi);
     m.swept = box.grown(std::sqrt(farthest) * (1.0 - std::cos(halfTurn)));
+    m.middle = Transform::of(motion.position + 0.5 * dt * motion.velocity, motion.angle + 0.5 * dt * motion.spin);
+    m.stray = 0.5 * dt * (motion.velocity.norm() + std::abs(motion.spin) * std::sqrt(farthest));
   }
   auto cellRange = [&](const Box& box, int& x0, int& x1, int& y0, int& y1) {
     auto clampTo = [](double v, int n) {
@@ -129,6 +133,12 @@ double Obstacles::movingClearance(const Vec2& x) const {
     result = std::min(result, std::sqrt(dx * dx + dy * dy));
   }
   return result;
+}
+
+double Obstacles::movingBound(std::uint32_t k, const Vec2& x, const CollisionFilter& filter) const {
+  const Moving& m = moving_[k];
+  if (!filter.accepts(m.group, m.collidesWith)) return kInfinity;
+  return m.field->sample(m.middle.toLocal(x)).distance - m.stray;
 }
 
 double Obstacles::clearance(const Vec2& x) const {
