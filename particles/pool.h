@@ -115,6 +115,8 @@ class ParticlePool {
   /// marking once. May be called from several threads for different particles.
   void kill(std::uint32_t index) { markedColumn()[index] = 1; }
   bool isMarked(std::uint32_t index) const { return column(kMarked)[index] != 0; }
+  /// Cost: one byte read a particle.
+  bool anyMarked() const { return firstMarked() < size_; }
   /// Removes all that is marked and keeps the order of the rest. Returns how many went. Cost: O(size) bytes read if
   /// none.
   std::size_t compact();
@@ -166,6 +168,7 @@ class ParticlePool {
   std::uint32_t addColumn(std::string_view name, ColumnKind kind, ColumnType type, std::size_t elementSize);
   std::uint32_t findColumn(std::string_view name, ColumnType type) const;
   std::uint8_t* markedColumn() { return reinterpret_cast<std::uint8_t*>(columns_[kMarked.index].data.data()); }
+  std::size_t firstMarked() const;  ///< size() if none
   bool makeRoom();
   ParticleHandle append();
   void removeAt(std::uint32_t index);

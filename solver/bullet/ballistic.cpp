@@ -60,7 +60,7 @@ bool Ballistic::follow(const StepContext& context, const DiscContact& disc, Part
   y[i] = path.x.y();
   vx[i] = v.x();
   vy[i] = v.y();
-  return path.crushed || !context.obstacles.domain().box.contains(path.x);
+  return path.crushed || hasLeft(context.obstacles.domain().box, x[i], y[i]);
 }
 
 }  // namespace froude

@@ -21,11 +21,11 @@ class Ballistic {
   /// One sub-step. Positions in free flight are exact for constant gravity; contacts are found along the chord. Bullets
   /// whose path a map of free space proves free fly over SIMD lanes; the map decides the cost alone, not one bit.
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
-  /// By block of kBlockSize bullets: not 0 if `advance` marked one of them or took one out of the domain's box.
+  /// By block of kBlockSize bullets: not 0 if `advance` marked one of them or one has left (hasLeft in flight.h).
   std::span<const std::uint8_t> left() const { return left_.span(); }
 
  private:
-  // Moves one bullet by the exact query; true if it is marked or out of the domain's box.
+  // Moves one bullet by the exact query; true if it is marked or has left.
   bool follow(const StepContext& context, const DiscContact& disc, ParticlePool& pool, std::uint32_t i);
 
   BulletDef def_;

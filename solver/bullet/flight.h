@@ -22,10 +22,15 @@ struct Flight {
   Box domain;  // [m]
 };
 
+/// True if a bullet is out of the domain or on the upper side of a periodic axis, where its image is in.
+inline bool hasLeft(const Box& domain, double x, double y) {
+  return !(x >= domain.min.x() && x < domain.max.x() && y >= domain.min.y() && y < domain.max.y());
+}
+
 /// What became of the bullets of a block.
 struct FlightResult {
   std::size_t near = 0;  // bullets that were not moved, because the map does not prove their path free
-  bool left = false;     // one of the others is not in the domain's box any more
+  bool left = false;     // one of the others has left, see hasLeft
 };
 
 /// Moves the bullets [begin, end) whose path the map proves free: v += halfKick, x += dt·v, v += halfKick. The indices

@@ -6,7 +6,9 @@ namespace {
 double freeTravel(const FreeMap::View& map, double x, double y) {
   const double cx = (x - map.originX) * map.inverse, cy = (y - map.originY) * map.inverse;
   if (!(cx >= 0.0 && cy >= 0.0 && cx < map.nx && cy < map.ny)) return 0.0;
-  return map.quantum * map.cells[static_cast<std::ptrdiff_t>(cy) * map.nx + static_cast<std::ptrdiff_t>(cx)];
+  const auto ix = static_cast<std::ptrdiff_t>(cx), iy = static_cast<std::ptrdiff_t>(cy);
+  const double offX = cx - (static_cast<double>(ix) + 0.5), offY = cy - (static_cast<double>(iy) + 0.5);
+  return map.quantum * map.cells[iy * map.nx + ix] - map.cell * std::sqrt(offX * offX + offY * offY);
 }
 
 }  // namespace
@@ -31,7 +33,7 @@ FlightResult flyScalar(const Flight& f, std::size_t begin, std::size_t end, std:
     f.y[i] += travelY;
     f.vx[i] = wx + f.halfKick.x();
     f.vy[i] = wy + f.halfKick.y();
-    result.left |= !f.domain.contains({f.x[i], f.y[i]});
+    result.left |= hasLeft(f.domain, f.x[i], f.y[i]);
   }
   return result;
 }

@@ -18,12 +18,13 @@ using I = hn::Rebind<std::int32_t, D>;
 using V = hn::Vec<D>;
 
 struct Lookup {
-  V originX, originY, inverse, quantum, nx, ny;
+  V originX, originY, cell, inverse, quantum, nx, ny;
   const std::uint8_t* cells;
 
   explicit HWY_INLINE Lookup(const FreeMap::View& map)
       : originX(hn::Set(D(), map.originX)),
         originY(hn::Set(D(), map.originY)),
+        cell(hn::Set(D(), map.cell)),
         inverse(hn::Set(D(), map.inverse)),
         quantum(hn::Set(D(), map.quantum)),
         nx(hn::Set(D(), static_cast<double>(map.nx))),
@@ -33,14 +34,17 @@ struct Lookup {
   HWY_INLINE V freeTravel(V x, V y) const {
     const D d;
     const I n;
-    const V zero = hn::Zero(d);
+    const V zero = hn::Zero(d), half = hn::Set(d, 0.5);
     const V cx = hn::Mul(hn::Sub(x, originX), inverse), cy = hn::Mul(hn::Sub(y, originY), inverse);
     const auto in = hn::And(hn::And(hn::Ge(cx, zero), hn::Ge(cy, zero)), hn::And(hn::Lt(cx, nx), hn::Lt(cy, ny)));
     // Whole numbers below 2³¹ as doubles are exact, and so is the number of the cell.
-    const V cell = hn::IfThenElseZero(in, hn::Add(hn::Mul(hn::Floor(cy), nx), hn::Floor(cx)));
-    const auto bytes = hn::GatherOffset(n, reinterpret_cast<const std::int32_t*>(cells), hn::DemoteTo(n, cell));
+    const V ix = hn::Floor(cx), iy = hn::Floor(cy);
+    const V number = hn::IfThenElseZero(in, hn::Add(hn::Mul(iy, nx), ix));
+    const auto bytes = hn::GatherOffset(n, reinterpret_cast<const std::int32_t*>(cells), hn::DemoteTo(n, number));
     const V steps = hn::PromoteTo(d, hn::And(bytes, hn::Set(n, 255)));
-    return hn::IfThenElseZero(in, hn::Mul(quantum, steps));
+    const V offX = hn::Sub(cx, hn::Add(ix, half)), offY = hn::Sub(cy, hn::Add(iy, half));
+    const V off = hn::Sqrt(hn::Add(hn::Mul(offX, offX), hn::Mul(offY, offY)));
+    return hn::IfThenElseZero(in, hn::Sub(hn::Mul(quantum, steps), hn::Mul(cell, off)));
   }
 };
 
@@ -78,8 +82,8 @@ FlightResult fly(const Flight& f, std::size_t begin, std::size_t end, std::uint3
     hn::StoreU(hn::IfThenElse(free, newY, y), d, f.y + i);
     hn::StoreU(hn::IfThenElse(free, hn::Add(wx, kickX), oldVx), d, f.vx + i);
     hn::StoreU(hn::IfThenElse(free, hn::Add(wy, kickY), oldVy), d, f.vy + i);
-    const auto outX = hn::Or(hn::Lt(newX, minX), hn::Gt(newX, maxX));
-    const auto outY = hn::Or(hn::Lt(newY, minY), hn::Gt(newY, maxY));
+    const auto outX = hn::Or(hn::Lt(newX, minX), hn::Ge(newX, maxX));
+    const auto outY = hn::Or(hn::Lt(newY, minY), hn::Ge(newY, maxY));
     left = hn::Or(left, hn::And(free, hn::Or(outX, outY)));
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, hn::AndNot(free, ours), bytes);

@@ -36,6 +36,7 @@ FreeMap::View FreeMap::view() const {
   return {moving_ ? all_.data() : fixed_.data(),
           tiles_.origin.x(),
           tiles_.origin.y(),
+          cell_,
           1.0 / cell_,
           quantum_,
           tiles_.nx * perTile_,
@@ -51,11 +52,11 @@ Vec2 FreeMap::center(int x, int y, int side) const {
 }
 
 // Lowers the values of a square of side × side cells to what `bound`, a lower bound of the distance of a point, allows.
-// A square that is far for its size gets one value; others are asked in quarters.
+// A square that is far for its size gets one value, that of the cells at its corners; others are asked in quarters.
 template <typename Bound>
 void FreeMap::lower(std::uint8_t* cells, int x, int y, int side, const Bound& bound) const {
   const double distance = bound(center(x, y, side));
-  const double corner = 0.70711 * side * cell_;
+  const double corner = 0.70711 * (side - 1) * cell_;
   const std::uint8_t value = steps(distance - corner);
   if (side > 1 && value < 255 && std::abs(distance) < 5.0 * corner) {
     const int half = side / 2;

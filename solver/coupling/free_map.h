@@ -9,9 +9,10 @@
 
 namespace froude {
 
-/// Cells over the domain. The value of a cell, times `quantum` [m], is a distance that a disc may travel from any point
-/// of the cell in any direction without touching an obstacle during the sub-step; 0 says nothing. A lower bound: it
-/// decides which particles are looked at closely, never where they go.
+/// Cells over the domain. The value of a cell, times `quantum` [m], is a distance that a disc may travel from the
+/// middle of the cell in any direction without touching an obstacle during the sub-step; from another point of the cell
+/// it is less by the distance to the middle. A lower bound: it decides which particles are looked at closely, never
+/// where they go.
 class FreeMap {
  public:
   /// What a loop needs to look a place up: cell (floor((x − originX)·inverse), …), row by row. Places beyond the cells
@@ -19,6 +20,7 @@ class FreeMap {
   struct View {
     const std::uint8_t* cells = nullptr;
     double originX = 0.0, originY = 0.0;  // [m]
+    double cell = 1.0;                    // side of a cell [m]
     double inverse = 1.0;                 // cells per metre
     double quantum = 0.0;                 // [m]
     int nx = 0, ny = 0;

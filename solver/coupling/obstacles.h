@@ -30,8 +30,8 @@ struct ObstacleHit {
 /// Obstacles of a world. `beginStep` once a sub-step, then any number of queries from any threads.
 class Obstacles {
  public:
-  /// band [m]: reach of exact distances, at least the support radius and the largest particle radius.
-  Obstacles(const DomainDef& domain, const BodySet& bodies, double band);
+  /// reach [m]: distances are exact at least this far; not below the support radius and the largest particle radius.
+  Obstacles(const DomainDef& domain, const BodySet& bodies, double reach);
 
   /// Poses at the start of the sub-step and their motion during dt [s]. `reach` [m]: no query of this sub-step looks
   /// farther than this beyond a moving body. Cost: moving bodies × cells that they sweep; nothing if none moves.
