@@ -1,0 +1,31 @@
+// The loop that fills neighbour lists: candidates stream through SIMD lanes, those near are packed together.
+#pragma once
+
+#include <cstdint>
+
+#include <froude/base/simd.h>
+#include <froude/particles/cell_grid.h>
+
+namespace froude {
+
+/// What the rows of a neighbour list are made of.
+struct ListRowsFrame {
+  const double* x;  // sorted positions [m]
+  const double* y;
+  double limit;          // square of the largest distance [m²]
+  std::uint32_t* first;  // per particle: where its row begins in the block's buffer, and how long it is
+  std::uint32_t* count;
+};
+
+/// Rows of the particles [begin, end) into `buffer`, which grows as needed: the indices, in the order of the grid's
+/// runs, of all others whose squared distance is below the limit. Same rows for all targets.
+using ListRows = void (*)(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
+                          AlignedArray<std::uint32_t>& buffer);
+
+/// Plain C++: the oracle of the wide versions.
+void listRowsScalar(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
+                    AlignedArray<std::uint32_t>& buffer);
+/// The loop of a target; that of Scalar is `listRowsScalar`.
+ListRows listRowsLoop(SimdTarget target);
+
+}  // namespace froude

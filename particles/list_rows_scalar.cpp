@@ -1,0 +1,39 @@
+#include <froude/particles/list_rows.h>
+
+#include <array>
+
+namespace froude {
+
+void listRowsScalar(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
+                    AlignedArray<std::uint32_t>& buffer) {
+  std::array<CellRun, 9> runs;
+  std::size_t runCount = 0, candidates = 0, used = 0;
+  std::uint32_t cell = 0xFFFFFFFFu;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double xi = frame.x[i], yi = frame.y[i];
+    if (const std::uint32_t c = grid.cellOf(xi, yi); c != cell) {
+      cell = c;
+      runCount = candidates = 0;
+      grid.forEachRun(cell, [&](const CellRun& run) {
+        runs[runCount++] = run;
+        candidates += run.end - run.begin;
+      });
+    }
+    // Room for all candidates, and half as much again so that a slightly denser step later does not allocate.
+    if (buffer.size() < used + candidates) buffer.resize(used + candidates + (used + candidates) / 2);
+    frame.first[i] = static_cast<std::uint32_t>(used);
+    std::uint32_t* out = buffer.data() + used;
+    for (std::size_t r = 0; r < runCount; ++r) {
+      const double xr = xi - runs[r].shiftX, yr = yi - runs[r].shiftY;
+      for (std::uint32_t j = runs[r].begin; j < runs[r].end; ++j) {
+        const double dx = frame.x[j] - xr, dy = frame.y[j] - yr;
+        *out = j;  // written always, kept if near: a branch here would be mispredicted half the time
+        out += static_cast<std::size_t>((dx * dx + dy * dy < frame.limit) & (j != i));
+      }
+    }
+    frame.count[i] = static_cast<std::uint32_t>(out - buffer.data()) - frame.first[i];
+    used += frame.count[i];
+  }
+}
+
+}  // namespace froude
