@@ -22,6 +22,18 @@ struct ListRowsFrame {
 using ListRows = void (*)(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
                           AlignedArray<std::uint32_t>& buffer);
 
+/// Adds the part of particle i's row that comes from one run; returns the row's new end. Writes at most the run's
+/// length.
+inline std::uint32_t* scalarRow(const ListRowsFrame& frame, const CellRun& run, std::uint32_t i, std::uint32_t* out) {
+  const double x = frame.x[i] - run.shiftX, y = frame.y[i] - run.shiftY;
+  for (std::uint32_t j = run.begin; j < run.end; ++j) {
+    const double dx = frame.x[j] - x, dy = frame.y[j] - y;
+    *out = j;  // written always, kept if near: a branch here would be mispredicted half the time
+    out += static_cast<std::size_t>((dx * dx + dy * dy < frame.limit) & (j != i));
+  }
+  return out;
+}
+
 /// Plain C++: the oracle of the wide versions.
 void listRowsScalar(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
                     AlignedArray<std::uint32_t>& buffer);

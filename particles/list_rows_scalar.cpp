@@ -23,14 +23,7 @@ void listRowsScalar(const CellGrid& grid, const ListRowsFrame& frame, std::size_
     if (buffer.size() < used + candidates) buffer.resize(used + candidates + (used + candidates) / 2);
     frame.first[i] = static_cast<std::uint32_t>(used);
     std::uint32_t* out = buffer.data() + used;
-    for (std::size_t r = 0; r < runCount; ++r) {
-      const double xr = xi - runs[r].shiftX, yr = yi - runs[r].shiftY;
-      for (std::uint32_t j = runs[r].begin; j < runs[r].end; ++j) {
-        const double dx = frame.x[j] - xr, dy = frame.y[j] - yr;
-        *out = j;  // written always, kept if near: a branch here would be mispredicted half the time
-        out += static_cast<std::size_t>((dx * dx + dy * dy < frame.limit) & (j != i));
-      }
-    }
+    for (std::size_t r = 0; r < runCount; ++r) out = scalarRow(frame, runs[r], static_cast<std::uint32_t>(i), out);
     frame.count[i] = static_cast<std::uint32_t>(out - buffer.data()) - frame.first[i];
     used += frame.count[i];
   }
