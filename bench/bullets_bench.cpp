@@ -8,6 +8,7 @@
 
 #include <froude/base/random.h>
 #include <froude/solver/world.h>
+#include "rows.h"
 
 namespace {
 
@@ -75,8 +76,9 @@ void step(benchmark::State& state) {
     for (int k = 0; k < 3; ++k) shower.world.substep();
     for (auto _ : state) shower.world.substep();
   });
-  state.counters["per_particle"] = benchmark::Counter(
-      static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  bench::items(state, count);
+  bench::threads(state, static_cast<int>(state.range(2)));
+  bench::timeStep(state, dt);
 }
 BENCHMARK(step)->ArgsProduct({{1000000}, {1000, 10000}, {1, 2}})->UseRealTime()->Unit(benchmark::kMillisecond);
 
@@ -95,8 +97,8 @@ void rest(benchmark::State& state) {
   arena.execute([&] {
     for (auto _ : state) world.substep();
   });
-  state.counters["per_particle"] = benchmark::Counter(
-      static_cast<double>(count), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  bench::items(state, count);
+  bench::threads(state, static_cast<int>(state.range(1)));
 }
 BENCHMARK(rest)->ArgsProduct({{100000}, {1, 2}})->UseRealTime()->Unit(benchmark::kMillisecond);
 

@@ -1,8 +1,8 @@
 #include <froude/particles/pool.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <tbb/task_arena.h>
+#include <cstdlib>
 
 #include <algorithm>
 #include <map>
