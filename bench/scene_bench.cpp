@@ -61,7 +61,7 @@ double meanNeighbours(const ParticlePool& pool, const Box& box, double support) 
 }
 
 // One run; false if the scene went unstable.
-bool run(const scene::Scene& scene, const Options& options, Outcome& outcome) {
+bool runOnce(const scene::Scene& scene, const Options& options, Outcome& outcome) {
   World world = scene::makeWorld(scene);
   const double end = options.until > 0.0 ? options.until : scene.duration;
   bool sound = true;
@@ -159,7 +159,7 @@ int main(int argc, char** argv) {
     tbb::task_arena arena(options.threads);
     for (int k = 0; k < options.runs; ++k) {
       for (std::size_t s = 0; s < scenes.size(); ++s) {
-        if (!arena.execute([&] { return run(scenes[s], options, outcomes[s]); })) return 3;
+        if (!arena.execute([&] { return runOnce(scenes[s], options, outcomes[s]); })) return 3;
       }
     }
     for (std::size_t s = 0; s < scenes.size(); ++s) print(scenes[s], outcomes[s]);
