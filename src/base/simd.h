@@ -16,7 +16,7 @@ std::string_view name(SimdTarget target);
 std::optional<SimdTarget> simdTarget(std::string_view name);
 /// Targets that this build holds and this processor runs, slowest first.
 std::vector<SimdTarget> supportedSimdTargets();
-/// The last of `supportedSimdTargets`.
+/// The last of `supportedSimdTargets`. Allocates nothing.
 SimdTarget bestSimdTarget();
 
 }  // namespace froude
