@@ -37,7 +37,7 @@ inline std::uint32_t* scalarRow(const ListRowsFrame& frame, const CellRun& run, 
 /// Plain C++: the oracle of the wide versions.
 void listRowsScalar(const CellGrid& grid, const ListRowsFrame& frame, std::size_t begin, std::size_t end,
                     AlignedArray<std::uint32_t>& buffer);
-/// The loop of a target; that of Scalar is `listRowsScalar`.
+/// The loop of a target; below AVX-512 that is `listRowsScalar`, which is then faster.
 ListRows listRowsLoop(SimdTarget target);
 
 }  // namespace froude

@@ -1,4 +1,5 @@
-// The rows over SIMD lanes, compiled once for each target; see list_rows_scalar.cpp for the same in plain C++.
+// The rows over SIMD lanes; see list_rows_scalar.cpp for the same in plain C++. For AVX-512 alone: without its
+// instruction that packs lanes this loop is slower than the plain one (docs/decisions/particles-neighbours.md).
 #include <froude/particles/list_rows.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -6,6 +7,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#if HWY_TARGET == HWY_AVX3
 HWY_BEFORE_NAMESPACE();
 namespace froude {
 namespace HWY_NAMESPACE {
@@ -20,8 +22,9 @@ constexpr std::uint32_t kChunk = 16;
 
 // The candidates of a cell side by side: one loop of one length for all of its particles.
 struct Packed {
-  double x[kMostPacked + kChunk], y[kMostPacked + kChunk];
-  std::uint32_t index[kMostPacked + kChunk];
+  alignas(64) double x[kMostPacked + kChunk];
+  alignas(64) double y[kMostPacked + kChunk];
+  alignas(64) std::uint32_t index[kMostPacked + kChunk];
   std::uint32_t count = 0;
 
   // In whole chunks, since the lengths of runs are what a processor cannot predict; `particles` is where reading ends.
@@ -132,6 +135,7 @@ ListRows wideListRows() { return listRows; }
 }  // namespace HWY_NAMESPACE
 }  // namespace froude
 HWY_AFTER_NAMESPACE();
+#endif  // HWY_AVX3
 
 #if HWY_ONCE
 namespace froude {
@@ -141,14 +145,6 @@ ListRows listRowsLoop(SimdTarget target) {
 #if (HWY_TARGETS & HWY_AVX3)
     case SimdTarget::Avx3:
       return N_AVX3::wideListRows();
-#endif
-#if (HWY_TARGETS & HWY_AVX2)
-    case SimdTarget::Avx2:
-      return N_AVX2::wideListRows();
-#endif
-#if (HWY_TARGETS & HWY_SSE4)
-    case SimdTarget::Sse4:
-      return N_SSE4::wideListRows();
 #endif
     default:
       return listRowsScalar;
