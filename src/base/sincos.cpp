@@ -1,9 +1,10 @@
-// Sines and cosines over SIMD lanes, compiled once for each target. The polynomials are those of fdlibm (Sun
-// Microsystems, 1993) on ±π/4; the reduction subtracts multiples of π/2 in three parts of 33 bits.
+// Sines and cosines over SIMD lanes, compiled once for each target: the first terms of their series on ±π/4, what is
+// cut off being below 1e-18 there; before that, multiples of π/2 are subtracted in three parts of 33 bits.
 #include <froude/base/sincos.h>
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 #include <froude/base/assert.h>
 
@@ -23,6 +24,12 @@ using V = hn::Vec<D>;
 
 constexpr double kLargestReduced = 1e5;
 
+// 1/(2k+1)! and 1/(2k)! with alternating signs, the highest first; all factorials are exact as doubles.
+constexpr double kSine[] = {1.0 / 355687428096000.0, -1.0 / 1307674368000.0, 1.0 / 6227020800.0, -1.0 / 39916800.0,
+                            1.0 / 362880.0,          -1.0 / 5040.0,          1.0 / 120.0,        -1.0 / 6.0};
+constexpr double kCosine[] = {1.0 / 20922789888000.0, -1.0 / 87178291200.0, 1.0 / 479001600.0, -1.0 / 3628800.0,
+                              1.0 / 40320.0,          -1.0 / 720.0,         1.0 / 24.0};
+
 HWY_INLINE V set(double v) { return hn::Set(D(), v); }
 
 HWY_INLINE void vector(const double* angle, double* sine, double* cosine) {
@@ -34,17 +41,11 @@ HWY_INLINE void vector(const double* angle, double* sine, double* cosine) {
   r = hn::NegMulAdd(turns, set(6.07710050630396597660e-11), r);
   r = hn::NegMulAdd(turns, set(2.02226624879595063154e-21), r);
   const auto q = hn::Mul(r, r);
-  auto s = hn::MulAdd(q, set(1.58969099521155010221e-10), set(-2.50507602534068634195e-08));
-  for (const double c : {2.75573137070700676789e-06, -1.98412698298579493134e-04, 8.33333333332248946124e-03,
-                         -1.66666666666666324348e-01}) {
-    s = hn::MulAdd(q, s, set(c));
-  }
+  auto s = set(kSine[0]);
+  for (std::size_t k = 1; k < std::size(kSine); ++k) s = hn::MulAdd(q, s, set(kSine[k]));
   s = hn::MulAdd(hn::Mul(q, r), s, r);
-  auto c = hn::MulAdd(q, set(-1.13596475577881948265e-11), set(2.08757232129817482790e-09));
-  for (const double k : {-2.75573143513906633035e-07, 2.48015872894767294178e-05, -1.38888888888741095749e-03,
-                         4.16666666666666019037e-02}) {
-    c = hn::MulAdd(q, c, set(k));
-  }
+  auto c = set(kCosine[0]);
+  for (std::size_t k = 1; k < std::size(kCosine); ++k) c = hn::MulAdd(q, c, set(kCosine[k]));
   const auto half = hn::Mul(q, set(0.5));
   const auto high = hn::Sub(set(1.0), half);
   c = hn::Add(high, hn::MulAdd(hn::Mul(q, q), c, hn::Sub(hn::Sub(set(1.0), high), half)));
