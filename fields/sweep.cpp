@@ -85,7 +85,7 @@ struct RelativePath {
   Vec2 offsetAt(double time) const { return offset + time * travel; }
   Vec2 at(double time) const {
     const Vec2 still = start.rotation.applyInverse(offsetAt(time));
-    return turn == 0.0 ? still : Rotation::of(turn * time).applyInverse(still);
+    return turn * time == 0.0 ? still : Rotation::of(turn * time).applyInverse(still);
   }
   /// Largest distance from the polygon's origin between two times: the offset is linear, so at an end.
   double arm(double begin, double end) const { return std::max(offsetAt(begin).norm(), offsetAt(end).norm()); }
@@ -172,7 +172,7 @@ class CurveSearch {
 }  // namespace
 
 Transform RigidMotion::at(double t) const {
-  if (spin == 0.0) return {start.position + t * velocity, start.rotation};
+  if (spin * t == 0.0) return {start.position + t * velocity, start.rotation};
   const Rotation turn = Rotation::of(spin * t);
   const Rotation& r = start.rotation;
   return {start.position + t * velocity, {r.c * turn.c - r.s * turn.s, r.s * turn.c + r.c * turn.s}};
@@ -195,8 +195,13 @@ SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double
   const Vec2 end = motion.start.position + dt * motion.velocity;
   const double skin = detail::skinFor(grid, {from, to, motion.start.position, end});
   const Vec2 start = path.at(0.0);
-  const FieldSample atStart = grid.sample(start);
-  const Chord whole{start, path.at(1.0), radius, skin, detail::floorFor(radius, skin, atStart.distance)};
+  // As in WorldField::sweepDisc: a bound tells most.
+  FieldSample atStart;
+  atStart.distance = grid.lowerBound(start);
+  if (!(atStart.distance > radius + 2.0 * skin)) atStart = grid.sample(start);
+  // The end matters to a polygon that does not turn; the other path is followed in chords of its own.
+  const Vec2 stop = path.turn == 0.0 ? path.at(1.0) : start;
+  const Chord whole{start, stop, radius, skin, detail::floorFor(radius, skin, atStart.distance)};
 
   SweepHit hit;
   if (path.turn == 0.0) {

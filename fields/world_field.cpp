@@ -127,7 +127,11 @@ SweepHit WorldField::sweepDisc(const Vec2& from, const Vec2& to, double radius, 
   if (!detail::finitePath(from, to)) return {};
   SweepHit hit;
   if (acceptsAll(filter)) {
-    hit = detail::sweepStill(grid_, from, to, radius, grid_.sample(from), nullptr);
+    // From the distance at its start a sweep learns whether it overlaps there or is in contact; a bound may tell.
+    FieldSample atStart;
+    atStart.distance = grid_.lowerBound(from);
+    if (!(atStart.distance > radius + 2.0 * detail::skinFor(grid_, {from, to}))) atStart = grid_.sample(from);
+    hit = detail::sweepStill(grid_, from, to, radius, atStart, nullptr);
   } else {
     const auto accepted = [&](std::uint32_t source) { return accepts(filter, source); };
     const detail::SourceFilter sources(accepted);

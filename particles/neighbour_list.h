@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <froude/base/api.h>
+#include <froude/base/simd.h>
 #include <froude/particles/cell_grid.h>
 
 namespace froude {
@@ -19,8 +20,9 @@ class FROUDE_API NeighbourList {
   /// x, y: positions sorted by `grid` [m] (permuted by its order). Lists pairs with distance < radius + skin: with a
   /// skin, the lists stay complete for `radius` until two particles have together moved by more than `skin`, see
   /// `stillHolds`. Precondition: radius + skin ≤ grid.frame().cellSize.
+  /// The lists are the same for all targets.
   void build(const CellGrid& grid, std::span<const double> x, std::span<const double> y, double radius,
-             double skin = 0.0);
+             double skin = 0.0, SimdTarget target = bestSimdTarget());
 
   std::size_t size() const { return count_.size(); }
   double radius() const { return radius_; }
@@ -37,7 +39,6 @@ class FROUDE_API NeighbourList {
 
  private:
   static constexpr std::size_t kRowsPerBlock = 1024;
-  void buildBlock(const CellGrid& grid, std::span<const double> x, std::span<const double> y, std::size_t block);
 
   std::vector<AlignedArray<std::uint32_t>> blocks_;
   AlignedArray<std::uint32_t> first_, count_;

@@ -13,6 +13,9 @@ namespace froude {
 
 inline constexpr std::align_val_t kSlabAlignment{64};
 
+// The paths that are short are `inline`, which GCC takes as a wish at -O2: a call for each object would cost as much as
+// the object.
+
 template <typename T>
 ObjectPool<T>::ObjectPool(PoolSettings settings)
     : settings_(checkedSettings(std::move(settings))),
@@ -85,14 +88,14 @@ bool ObjectPool<T>::tryMakeRoom() {
 }
 
 template <typename T>
-ObjectHandle<T> ObjectPool<T>::acquire() {
+inline ObjectHandle<T> ObjectPool<T>::acquire() {
   const std::uint32_t slot = table_.acquire();
   ++counters_.created;
   return {slot, table_.generation(slot)};
 }
 
 template <typename T>
-void ObjectPool<T>::reset(T& object) {
+inline void ObjectPool<T>::reset(T& object) {
   if (initializer_) {
     initializer_(object);
   } else {
@@ -112,8 +115,10 @@ ObjectHandle<T> ObjectPool<T>::create() {
 }
 
 template <typename T>
-ObjectHandle<T> ObjectPool<T>::tryCreate() {
-  if (table_.full() && !tryMakeRoom()) return {};
+inline ObjectHandle<T> ObjectPool<T>::tryCreate() {
+  if (table_.full()) [[unlikely]] {
+    if (!tryMakeRoom()) return {};
+  }
   const Handle handle = acquire();
 #if defined(__GNUC__)
   // The order in which free slots come is known: fetching an object that will be reset soon hides its cache misses. Not
@@ -128,13 +133,15 @@ ObjectHandle<T> ObjectPool<T>::tryCreate() {
 }
 
 template <typename T>
-ObjectHandle<T> ObjectPool<T>::tryCreateRaw() {
-  if (table_.full() && !tryMakeRoom()) return {};
+inline ObjectHandle<T> ObjectPool<T>::tryCreateRaw() {
+  if (table_.full()) [[unlikely]] {
+    if (!tryMakeRoom()) return {};
+  }
   return acquire();
 }
 
 template <typename T>
-bool ObjectPool<T>::tryRelease(Handle handle) {
+inline bool ObjectPool<T>::tryRelease(Handle handle) {
   if (!isAlive(handle)) return false;
   table_.release(handle.slot);
   ++counters_.released;
@@ -142,7 +149,7 @@ bool ObjectPool<T>::tryRelease(Handle handle) {
 }
 
 template <typename T>
-void ObjectPool<T>::release(Handle handle) {
+inline void ObjectPool<T>::release(Handle handle) {
   if (!tryRelease(handle)) throw PoolError(badHandleMessage(settings_, handle.slot, handle.generation));
 }
 

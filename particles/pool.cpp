@@ -170,13 +170,16 @@ void ParticlePool::release(ParticleHandle handle) {
   if (!tryRelease(handle)) throw PoolError(badHandleMessage(settings_, handle.slot, handle.generation));
 }
 
-bool ParticlePool::anyMarked() const { return size_ > 0 && std::memchr(column(kMarked).data(), 1, size_) != nullptr; }
+std::size_t ParticlePool::firstMarked() const {
+  const std::uint8_t* marked = column(kMarked).data();
+  const void* hit = size_ > 0 ? std::memchr(marked, 1, size_) : nullptr;
+  return hit == nullptr ? size_ : static_cast<std::size_t>(static_cast<const std::uint8_t*>(hit) - marked);
+}
 
 std::size_t ParticlePool::compact() {
+  const std::size_t first = firstMarked();
+  if (first == size_) return 0;
   const std::uint8_t* marked = markedColumn();
-  const void* hit = size_ > 0 ? std::memchr(marked, 1, size_) : nullptr;
-  if (hit == nullptr) return 0;
-  const auto first = static_cast<std::size_t>(static_cast<const std::uint8_t*>(hit) - marked);
   const std::uint32_t* slot = column(kSlot).data();
   std::size_t kept = first;
   for (std::size_t i = first; i < size_; ++i) {

@@ -32,20 +32,20 @@ void SlotTable::grow(std::size_t count) {
   const std::size_t before = capacity();
   const std::size_t after = before + count;
   generation_.reserve(after);
-  ring_.reserve(after);
+  free_.reserve(after);
   if (tracksAge_) {
     older_.reserve(after);
     younger_.reserve(after);
   }
-  straightenRing();
   generation_.resize(after);
-  ring_.resize(after);
-  for (std::size_t slot = before; slot < after; ++slot) {
-    generation_[slot] = firstGeneration_;
-    ring_[freeCount_++] = static_cast<std::uint32_t>(slot);
+  free_.resize(after);
+  // Below the others, the lowest on top, so that fresh slots come in order.
+  std::copy_backward(free_.begin(), free_.begin() + freeCount_, free_.begin() + freeCount_ + count);
+  for (std::size_t k = 0; k < count; ++k) {
+    generation_[before + k] = firstGeneration_;
+    free_[k] = static_cast<std::uint32_t>(after - 1 - k);
   }
-  head_ = 0;
-  tail_ = freeCount_ == after ? 0 : freeCount_;
+  freeCount_ += count;
   if (tracksAge_) {
     older_.resize(after);
     younger_.resize(after);
@@ -53,19 +53,21 @@ void SlotTable::grow(std::size_t count) {
 }
 
 std::size_t SlotTable::purge(std::size_t granule) {
+  const auto isNeeded = [this](std::size_t slot) {
+    return (generation_[slot] & 1u) != 0 || generation_[slot] == kWorn;
+  };
   std::size_t needed = capacity();
-  while (needed > 0 && !isLive(static_cast<std::uint32_t>(needed - 1))) --needed;
+  while (needed > 0 && !isNeeded(needed - 1)) --needed;
   const std::size_t kept = std::min(capacity(), std::max<std::size_t>(1, (needed + granule - 1) / granule) * granule);
   const std::size_t dropped = capacity() - kept;
   if (dropped == 0) return 0;
   for (std::size_t slot = kept; slot < capacity(); ++slot) {
     firstGeneration_ = std::max(firstGeneration_, generation_[slot]);
   }
-  straightenRing();
-  const auto isKept = [kept](std::uint32_t slot) { return slot < kept; };
-  std::stable_partition(ring_.begin(), ring_.begin() + freeCount_, isKept);
+  const auto isDropped = [kept](std::uint32_t slot) { return slot >= kept; };
+  std::remove_if(free_.begin(), free_.begin() + freeCount_, isDropped);
   freeCount_ -= dropped;
-  for (AlignedArray<std::uint32_t>* a : {&generation_, &ring_}) {
+  for (AlignedArray<std::uint32_t>* a : {&generation_, &free_}) {
     a->resize(kept);
     a->shrink();
   }
@@ -75,9 +77,23 @@ std::size_t SlotTable::purge(std::size_t granule) {
       a->shrink();
     }
   }
-  head_ = 0;
-  tail_ = freeCount_ == kept ? 0 : freeCount_;
   return dropped;
+}
+
+std::uint32_t SlotTable::acquireTracked() {
+  const std::uint32_t slot = free_[--freeCount_];
+  ++generation_[slot];
+  linkYoungest(slot);
+  return slot;
+}
+
+void SlotTable::releaseRarely(std::uint32_t slot) {
+  if (tracksAge_) unlink(slot);
+  if (++generation_[slot] == kWorn) {
+    ++wornCount_;
+  } else {
+    free_[freeCount_++] = slot;
+  }
 }
 
 void SlotTable::linkYoungest(std::uint32_t slot) {
@@ -95,21 +111,13 @@ void SlotTable::unlink(std::uint32_t slot) {
   older_[slot] = younger_[slot] = 0;  // so that equal states have equal bytes
 }
 
-// Moves the free list to the front of the ring; the same list, whatever the history of head and tail.
-void SlotTable::straightenRing() {
-  if (head_ != 0) std::rotate(ring_.begin(), ring_.begin() + head_, ring_.end());
-  head_ = 0;
-  tail_ = freeCount_ == ring_.size() ? 0 : freeCount_;
-}
-
 void SlotTable::archive(Archive& archive) {
-  straightenRing();
   archive.array("generation", generation_);
   const std::size_t slots = generation_.size();
-  if (archive.loading()) ring_.resize(slots);
+  if (archive.loading()) free_.resize(slots);
   freeCount_ = archive.count("free", freeCount_);
   if (freeCount_ > slots) throw PoolError("saved state: more free slots than slots");
-  archive.bytes("free", ring_.data(), sizeof(std::uint32_t), freeCount_);
+  archive.bytes("free", free_.data(), sizeof(std::uint32_t), freeCount_);
   archive.value("first_generation", firstGeneration_);
   if (tracksAge_) {
     archive.array("older", older_);
@@ -117,12 +125,11 @@ void SlotTable::archive(Archive& archive) {
     archive.value("oldest", oldest_);
     archive.value("youngest", youngest_);
   }
-  head_ = 0;
-  tail_ = freeCount_ == slots ? 0 : freeCount_;
+  wornCount_ = static_cast<std::size_t>(std::count(generation_.begin(), generation_.end(), kWorn));
 }
 
 std::size_t SlotTable::memoryBytes() const {
-  return sizeof(std::uint32_t) * (generation_.capacity() + ring_.capacity() + older_.capacity() + younger_.capacity());
+  return sizeof(std::uint32_t) * (generation_.capacity() + free_.capacity() + older_.capacity() + younger_.capacity());
 }
 
 }  // namespace froude

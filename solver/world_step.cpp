@@ -250,29 +250,45 @@ void World::Impl::tellSinks(const ParticlePool& pool) {
 }
 
 void World::Impl::retire() {
-  auto clean = [&](ParticlePool& pool, double mass, ColumnId<double> expires) {
-    std::uint64_t crushed = 0;
-    remove(pool, mass, crushed);  // what the models marked; their own counters have it
+  const Box& box = def.domain.box;
+  auto wrapAndMark = [&](ParticlePool& pool, std::size_t begin, std::size_t end) {
     const auto x = pool.x(), y = pool.y();
-    const Box& box = def.domain.box;
-    parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const bool inside = x[i] >= box.min.x() && x[i] < box.max.x() && y[i] >= box.min.y() && y[i] < box.max.y();
-        if (inside) continue;
-        if (def.domain.periodicX) x[i] = wrapped(x[i], box.min.x(), box.max.x());
-        if (def.domain.periodicY) y[i] = wrapped(y[i], box.min.y(), box.max.y());
-        if (!box.contains({x[i], y[i]})) pool.kill(static_cast<std::uint32_t>(i));
-      }
-    });
-    remove(pool, mass, ledger.retired);
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool inside = x[i] >= box.min.x() && x[i] < box.max.x() && y[i] >= box.min.y() && y[i] < box.max.y();
+      if (inside) continue;
+      if (def.domain.periodicX) x[i] = wrapped(x[i], box.min.x(), box.max.x());
+      if (def.domain.periodicY) y[i] = wrapped(y[i], box.min.y(), box.max.y());
+      if (!box.contains({x[i], y[i]})) pool.kill(static_cast<std::uint32_t>(i));
+    }
+  };
+  auto takenOut = [&](ParticlePool& pool, double mass, ColumnId<double> expires) {
     if (!sinks.empty() && sinks.mark(pool) > 0) {
       tellSinks(pool);
       remove(pool, mass, ledger.sunk);
     }
     if (anyLifetime && markExpired(pool, expires, time) > 0) remove(pool, mass, ledger.expired);
   };
-  if (fluid != nullptr) clean(*fluid, fluidModel->particleMass(), fluidExpires);
-  if (bullets != nullptr) clean(*bullets, ballistic->mass(), bulletExpires);
+  std::uint64_t crushed = 0;  // what the models marked; their own counters have it
+  if (fluid != nullptr) {
+    remove(*fluid, fluidModel->particleMass(), crushed);
+    parallelFor(fluid->size(), [&](std::size_t begin, std::size_t end) { wrapAndMark(*fluid, begin, end); });
+    remove(*fluid, fluidModel->particleMass(), ledger.retired);
+    takenOut(*fluid, fluidModel->particleMass(), fluidExpires);
+  }
+  if (bullets != nullptr) {
+    // Bullets know the blocks in which one was marked or left; most steps of most blocks have none.
+    const auto left = ballistic->left();
+    if (bullets->anyMarked() || std::any_of(left.begin(), left.end(), [](std::uint8_t any) { return any != 0; })) {
+      const std::size_t crushedBefore = crushed;
+      remove(*bullets, ballistic->mass(), crushed);
+      const bool moved = crushed != crushedBefore;  // indices are not those of the blocks any more
+      parallelFor(bullets->size(), [&](std::size_t begin, std::size_t end) {
+        if (moved || left[begin / kBlockSize] != 0) wrapAndMark(*bullets, begin, end);
+      });
+      remove(*bullets, ballistic->mass(), ledger.retired);
+    }
+    takenOut(*bullets, ballistic->mass(), bulletExpires);
+  }
 }
 
 }  // namespace froude

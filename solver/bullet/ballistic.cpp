@@ -13,42 +13,54 @@ double bulletStepBound(const BulletDef& def, double gravity) {
 Ballistic::Ballistic(const BulletDef& def) : def_(def), mass_(def.density * kPi * def.radius * def.radius) {}
 
 void Ballistic::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
+  left_.resize(blockCount(pool.size()));
   if (pool.empty()) return;
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const DiscContact disc{def_.radius, def_.restitution, def_.friction, {def_.group, def_.collidesWith}};
-  const double dt = context.dt;
+  map_.prepare(context.obstacles, def_.radius, disc.filter, pool.size());
+  map_.refresh(context.obstacles);
   contacts_.begin(pool.size());
   crushed_.assign(blockCount(pool.size()), 0);
+  near_.resize(pool.size());
+  const Vec2 halfKick = 0.5 * context.dt * context.gravity.constant();
+  const Flight flight{pool.x().data(), pool.y().data(), pool.vx().data(), pool.vy().data(),
+                      context.dt,      halfKick,        map_.view(),      context.obstacles.domain().box};
+  const FlyLoop fly = flyLoop(context.simd);
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec2 at(x[i], y[i]);
-      const Vec2 half = 0.5 * dt * context.gravity.at(at, context.time);
-      Vec2 v = Vec2(vx[i], vy[i]) + half;
-      Vec2 to = at + dt * v;
-      const double reach = (to - at).norm() + def_.radius;
-      if (context.obstacles.clearance(at) <= reach && context.obstacles.freeDistance(at, disc.filter) <= reach) {
-        PathResult path;
-        followPath(context.obstacles, at, v, dt, disc, path);
-        contacts_.add(i, path);
-        to = path.x;
-        v = path.v;
-        if (path.crushed) {
-          ++crushed_[begin / kBlockSize];
-          pool.kill(static_cast<std::uint32_t>(i));
-        }
-      }
-      v += half;
-      x[i] = to.x();
-      y[i] = to.y();
-      vx[i] = v.x();
-      vy[i] = v.y();
+    std::uint32_t* near = near_.data() + begin;
+    FlightResult result;
+    if (context.gravity.isConstant()) {
+      result = fly(flight, begin, end, near);
+    } else {
+      result.near = end - begin;
+      std::iota(near, near + result.near, static_cast<std::uint32_t>(begin));
     }
+    for (std::size_t k = 0; k < result.near; ++k) result.left |= follow(context, disc, pool, near[k]);
+    left_[begin / kBlockSize] = result.left ? 1 : 0;
   });
   contacts_.book(mass_, impulses);
   stats.crushed += std::accumulate(crushed_.begin(), crushed_.end(), std::uint64_t{0});
   if (context.gravity.isConstant()) {
-    stats.gravityImpulse += mass_ * static_cast<double>(pool.size()) * dt * context.gravity.constant();
+    stats.gravityImpulse += mass_ * static_cast<double>(pool.size()) * context.dt * context.gravity.constant();
   }
+}
+
+bool Ballistic::follow(const StepContext& context, const DiscContact& disc, ParticlePool& pool, std::uint32_t i) {
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const Vec2 at(x[i], y[i]);
+  const Vec2 half = 0.5 * context.dt * context.gravity.at(at, context.time);
+  PathResult path;
+  followPath(context.obstacles, at, Vec2(vx[i], vy[i]) + half, context.dt, disc, path);
+  contacts_.add(i, path);
+  if (path.crushed) {
+    ++crushed_[i / kBlockSize];
+    pool.kill(i);
+  }
+  const Vec2 v = path.v + half;
+  x[i] = path.x.x();
+  y[i] = path.x.y();
+  vx[i] = v.x();
+  vy[i] = v.y();
+  return path.crushed || hasLeft(context.obstacles.domain().box, x[i], y[i]);
 }
 
 }  // namespace froude

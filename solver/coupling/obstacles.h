@@ -30,8 +30,8 @@ struct ObstacleHit {
 /// Obstacles of a world. `beginStep` once a sub-step, then any number of queries from any threads.
 class Obstacles {
  public:
-  /// band [m]: reach of exact distances, at least the support radius and the largest particle radius.
-  Obstacles(const DomainDef& domain, const BodySet& bodies, double band);
+  /// reach [m]: distances are exact at least this far; not below the support radius and the largest particle radius.
+  Obstacles(const DomainDef& domain, const BodySet& bodies, double reach);
   /// For bodies that came, went or were put elsewhere: as constructed anew, but fields that are the same are kept.
   /// Cost: that of the constructor for what is new, a comparison for the rest.
   void rebuild(const BodySet& bodies);
@@ -91,6 +91,28 @@ class Obstacles {
   bool anySticks() const { return anySticks_; }
 
   bool anyMoving() const { return !moving_.empty(); }
+
+  /// What a map of free space is made of (free_map.h). Tiles are squares over the domain; a moving body that is not
+  /// listed in a tile stays farther than `reach` from all of its points during the sub-step.
+  struct Tiles {
+    Vec2 origin{0, 0};  // [m]
+    double size = 1.0;  // [m]
+    int nx = 1, ny = 1;
+  };
+  Tiles tiles() const { return {coarseOrigin_, coarseCell_, coarseNx_, coarseNy_}; }
+  std::span<const std::uint32_t> movingIn(int tileX, int tileY) const {
+    const auto c = static_cast<std::size_t>(tileY * coarseNx_ + tileX);
+    return {coarseBodies_.data() + coarseStart_[c], coarseStart_[c + 1] - coarseStart_[c]};
+  }
+  double reach() const { return reach_; }
+  /// Never above the distance of x to fixed obstacles that the filter accepts, images across periodic sides left out;
+  /// not positive inside [m].
+  double fixedBound(const Vec2& x, const CollisionFilter& filter) const { return fixed_->sample(x, filter).distance; }
+  /// The same for moving body `k` of `movingIn` at every time of the sub-step.
+  double movingBound(std::uint32_t k, const Vec2& x, const CollisionFilter& filter) const;
+  /// Largest coordinate in play [m].
+  double scale() const { return domain_.box.min.cwiseAbs().cwiseMax(domain_.box.max.cwiseAbs()).maxCoeff(); }
+
   const DomainDef& domain() const { return domain_; }
   std::size_t memoryBytes() const;
 
@@ -101,7 +123,9 @@ class Obstacles {
     std::shared_ptr<const DistanceField> field;
     RigidMotion motion;
     Transform end;
-    Box swept;  // the body's box over the sub-step [m]
+    Box swept;           // the body's box over the sub-step [m]
+    Transform middle;    // pose at half of the sub-step
+    double stray = 0.0;  // no point of the body is ever farther than this from where it is at half of it [m]
     std::uint32_t group, collidesWith;
   };
   std::span<const std::uint32_t> movingNear(const Vec2& x) const;

@@ -38,6 +38,13 @@ std::vector<SimdTarget> supportedSimdTargets() {
   return targets;
 }
 
-SimdTarget bestSimdTarget() { return supportedSimdTargets().back(); }
+SimdTarget bestSimdTarget() {
+  const long long running = hwy::SupportedTargets();
+  SimdTarget best = SimdTarget::Scalar;
+  for (const Entry& e : kEntries) {
+    if ((running & e.highwayBit) != 0) best = e.target;
+  }
+  return best;
+}
 
 }  // namespace froude

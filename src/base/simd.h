@@ -18,7 +18,7 @@ FROUDE_API std::string_view name(SimdTarget target);
 FROUDE_API std::optional<SimdTarget> simdTarget(std::string_view name);
 /// Targets that this build holds and this processor runs, slowest first.
 FROUDE_API std::vector<SimdTarget> supportedSimdTargets();
-/// The last of `supportedSimdTargets`.
+/// The last of `supportedSimdTargets`. Allocates nothing.
 FROUDE_API SimdTarget bestSimdTarget();
 
 }  // namespace froude

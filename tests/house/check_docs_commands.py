@@ -95,6 +95,8 @@ class Judge:
             return self.run_froude(words, expected)
         if program in known:
             return known[program](words)
+        if program.endswith("_bench"):
+            return self.missing([f"bench/{program}.cpp"] + [word for word in words[1:] if word.endswith(".toml")])
         return f"the check does not know how to judge '{words[0]}'"
 
     def run_froude(self, words, expected):
