@@ -1,9 +1,11 @@
 // What one sub-step is: the only holder of a time step. And what it reports.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <froude/base/simd.h>
+#include <froude/particles/pool.h>
 #include <froude/solver/coupling/obstacles.h>
 #include <froude/solver/definitions.h>
 #include <froude/solver/report.h>
@@ -30,6 +32,8 @@ struct StepContext {
   const Gravity& gravity;
   const Obstacles& obstacles;
   SimdTarget simd;
+  /// Of the fluid's pool, in scenes with fluid nozzles: until when a nozzle carries a particle at its own velocity [s].
+  std::optional<ColumnId<double>> carriedUntil = std::nullopt;
 };
 
 /// A particle met an obstacle.

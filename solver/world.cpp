@@ -45,6 +45,9 @@ World::Impl::Impl(const WorldDef& definition)
     fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);
     fluidExpires = fluid->addColumn<double>("expires", ColumnKind::State);
     fluidSource = fluid->addColumn<std::uint32_t>("source", ColumnKind::State);
+    const bool nozzles = std::any_of(def.emitters.begin(), def.emitters.end(),
+                                     [](const EmitterDef& e) { return e.kind == EmitterDef::Kind::Fluid; });
+    if (nozzles) fluidCarried = fluid->addColumn<double>("carried_until", ColumnKind::State);
   }
   if (def.bullet) {
     if (!(def.bullet->radius > 0.0)) throw Error("bullet radius must be a positive length");

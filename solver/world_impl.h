@@ -90,6 +90,7 @@ struct World::Impl {
   BodySet bodies;
   std::unique_ptr<ParticlePool> fluid, bullets;
   ColumnId<double> fluidExpires, bulletExpires;
+  std::optional<ColumnId<double>> fluidCarried;
   ColumnId<std::uint32_t> fluidSource, bulletSource;
   std::unique_ptr<FluidModel> fluidModel;
   std::unique_ptr<Ballistic> ballistic;

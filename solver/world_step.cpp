@@ -133,7 +133,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
                        (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * accelerationScale();
   obstacles->beginStep(bodies, dt, 2.0 * reach);
   impulses.reset(bodies.size());
-  const StepContext context{time, dt, gravity, *obstacles, def.simd};
+  const StepContext context{time, dt, gravity, *obstacles, def.simd, fluidCarried};
   pushByForce(dt, stats);
   if (fluidModel != nullptr) {
     impulses.setRecorder(events.listenTo(Species::Fluid, *fluid, bodies, time, dt));
@@ -228,6 +228,11 @@ void World::Impl::emit(double dt) {
       pool.vy()[i] = velocity.y();
       pool.column(sourceColumn)[i] = tag;
       pool.column(expiresColumn)[i] = emitter.expiry(time);
+      if (isFluid) {
+        // A piston: what has come less than the support radius far is not pushed back into the nozzle.
+        const double way = velocity.normalized().dot(position - emitter.def().from);
+        pool.column(*fluidCarried)[i] = time + (fluidModel->supportRadius() - way) / emitter.def().speed;
+      }
       ++ledger.emitted;
       if (isFluid) ledger.massEmitted += mass;
       ledger.impulse += mass * velocity;

@@ -106,6 +106,7 @@ void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger&
   finishPositions(context, pool, impulses, stats);  // lines 20–21, 23
   smoothVelocities(context, pool);                  // line 22
   dragAlongWalls(context, pool, impulses);
+  bookCarried(context, pool, impulses);
 }
 
 void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
@@ -116,7 +117,8 @@ void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger&
   contacts_.begin(pool.size());
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec2 g = context.gravity.at({x[i], y[i]}, context.time);
+      const bool carried = context.carriedUntil && pool.column(*context.carriedUntil)[i] > context.time;
+      const Vec2 g = carried ? Vec2(0.0, 0.0) : context.gravity.at({x[i], y[i]}, context.time);
       // Until the positions say what the velocity is, it carries the prediction through the sort.
       vx[i] += dt * g.x();
       vy[i] += dt * g.y();
@@ -161,6 +163,28 @@ void Pbf::sortByCell(const StepContext& context, ParticlePool& pool) {
     }
   });
   findOccupiedCells(grid_, occupied_);
+  findCarried(context, pool);
+}
+
+// What a nozzle carries is a piston to the rest: it neither falls nor gives way. What it is spared goes to the books as
+// the nozzle's.
+void Pbf::findCarried(const StepContext& context, const ParticlePool& pool) {
+  carried_.clear();
+  if (!context.carriedUntil) return;
+  const auto until = pool.column(*context.carriedUntil);
+  for (std::uint32_t i = 0; i < pool.size(); ++i) {
+    if (until[i] > context.time) carried_.push_back({i, {0.0, 0.0}});
+  }
+}
+
+void Pbf::holdCarried(bool asVelocity) {
+  for (Carried& c : carried_) {
+    const std::uint32_t i = c.particle;
+    if (asVelocity) c.spared += Vec2(static_cast<double>(shiftX_[i]), static_cast<double>(shiftY_[i]));
+    shiftX_[i] = shiftY_[i] = 0.0f;
+    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
+    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
+  }
 }
 
 void Pbf::meetWalls(const StepContext& context) {
@@ -202,7 +226,7 @@ double Pbf::runDensity(const StepContext& context, float* density, float* diagon
   return excess;
 }
 
-void Pbf::runDisplacement(const StepContext& context, const float* pressure, float* kappa) {
+void Pbf::runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity) {
   const PairFrame pairs = frame();
   const DisplacementLoop loop{pressure,
                               walls_.any() ? walls_.gradientX() : nullptr,
@@ -218,6 +242,7 @@ void Pbf::runDisplacement(const StepContext& context, const float* pressure, flo
               [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
   latticeX_.swap(nextX_);
   latticeY_.swap(nextY_);
+  holdCarried(asVelocity);
 }
 
 void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
@@ -289,7 +314,7 @@ void Pbf::stabilize(const StepContext& context, ParticlePool& pool) {
       solvedY_[i] = shiftY_[i];
     }
   });
-  runDisplacement(context, change_.data(), nullptr);
+  runDisplacement(context, change_.data(), nullptr, false);
   runDensity(context, density.data(), nullptr, {});
 }
 
@@ -431,6 +456,11 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.viscosity(pairs, loop, begin, end); });
+  for (Carried& c : carried_) {
+    const std::uint32_t i = c.particle;
+    c.spared += context.dt / dx_ * Vec2(static_cast<double>(smoothX_[i]), static_cast<double>(smoothY_[i]));
+    smoothX_[i] = smoothY_[i] = 0.0f;
+  }
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       vx[i] += static_cast<double>(smoothX_[i]);
@@ -466,6 +496,14 @@ void Pbf::dragAlongWalls(const StepContext& context, ParticlePool& pool, Impulse
     vx[i] = v.x();
     vy[i] = v.y();
   });
+}
+
+void Pbf::bookCarried(const StepContext& context, const ParticlePool& pool, ImpulseLedger& impulses) const {
+  for (const Carried& c : carried_) {
+    const Vec2 at(pool.x()[c.particle], pool.y()[c.particle]), v(pool.vx()[c.particle], pool.vy()[c.particle]);
+    const Vec2 fall = context.dt * context.gravity.at(at, context.time);
+    impulses.add(-1, at, particleMass() * (dx_ / context.dt * c.spared + fall), v);
+  }
 }
 
 void Pbf::wrapPeriodic(ParticlePool& pool) {

@@ -43,9 +43,12 @@ class Pbf final : public FluidModel {
   CollisionFilter filter() const { return {def_.group, def_.collidesWith}; }
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;
   void wrapPeriodic(ParticlePool& pool);
+  void findCarried(const StepContext& context, const ParticlePool& pool);
+  void holdCarried(bool asVelocity);
+  void bookCarried(const StepContext& context, const ParticlePool& pool, ImpulseLedger& impulses) const;
   PairFrame frame() const;
   double runDensity(const StepContext& context, float* density, float* diagonal, const PressureUpdate& update);
-  void runDisplacement(const StepContext& context, const float* pressure, float* kappa);
+  void runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity = true);
   void resizeScratch(std::size_t n);
   /// p/ρ [m²/s²].
   struct PressureScale {
@@ -71,6 +74,11 @@ class Pbf final : public FluidModel {
   AlignedArray<float> velocityX_, velocityY_, smoothX_, smoothY_;  // [m/s]
   std::vector<double> excess_;                                     // one a task
   double largestPressure_ = 0.0;  // p/ρ at the start of a sub-step, at its end once it is judged [m²/s²]
+  struct Carried {
+    std::uint32_t particle;
+    Vec2 spared;  // displacement that it did not make [dx]
+  };
+  std::vector<Carried> carried_;  // by a nozzle
   ContactLog contacts_;
   std::vector<std::uint32_t> crushed_, leaks_;  // counts, one a block
 };
