@@ -195,7 +195,7 @@ double Obstacles::freeDistance(const Vec2& x, const CollisionFilter& filter) con
 void Obstacles::touch(ObstacleHit& hit, int body) const {
   if (body < 0) return;
   const Surface& surface = surfaces_[static_cast<std::size_t>(body)];
-  hit.surfaceVelocity += surface.velocity * leftNormal(hit.normal);
+  hit.surfaceVelocity += beltVelocity(body, hit.normal);
   hit.friction = surface.friction;
   hit.restitution = surface.restitution;
 }
@@ -302,9 +302,15 @@ Vec2 Obstacles::velocityAt(int body, const Vec2& x) const {
   return m.motion.velocity + cross(m.motion.spin, x - m.end.position);
 }
 
+Vec2 Obstacles::carriedFrom(int body, const Vec2& x, double t0) const {
+  const int k = body < 0 ? -1 : surfaces_[static_cast<std::size_t>(body)].moving;
+  if (k < 0) return x;
+  const Moving& m = moving_[static_cast<std::size_t>(k)];
+  return m.end.toWorld(m.motion.at(t0 * dt_).toLocal(x));
+}
+
 Vec2 Obstacles::surfaceVelocityAt(int body, const Vec2& x, const Vec2& normal) const {
-  if (body < 0) return {0.0, 0.0};
-  return velocityAt(body, x) + surfaces_[static_cast<std::size_t>(body)].velocity * leftNormal(normal);
+  return velocityAt(body, x) + beltVelocity(body, normal);
 }
 
 std::size_t Obstacles::memoryBytes() const {

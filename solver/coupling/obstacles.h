@@ -80,6 +80,12 @@ class Obstacles {
   /// Velocity of a body's material (its belt left out) at x during the sub-step; 0 for the domain (−1) [m/s].
   Vec2 velocityAt(int body, const Vec2& x) const;
 
+  /// What the body's belt adds to the velocity of its material where `normal` points out of it [m/s].
+  Vec2 beltVelocity(int body, const Vec2& normal) const {
+    return body < 0 ? Vec2(0.0, 0.0) : Vec2(surfaces_[static_cast<std::size_t>(body)].velocity * leftNormal(normal));
+  }
+  /// Where a point that moves with the body's material from x on, at the share t0 of the sub-step, is at its end [m].
+  Vec2 carriedFrom(int body, const Vec2& x, double t0) const;
   /// Velocity of the surface that a particle at x feels, `normal` pointing from the surface to it: the material's and
   /// the belt's [m/s].
   Vec2 surfaceVelocityAt(int body, const Vec2& x, const Vec2& normal) const;

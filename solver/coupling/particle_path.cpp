@@ -50,11 +50,14 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
         hit.normal,
         std::max(0.0, (hit.surfaceVelocity - before).dot(hit.normal))};
     if (last) {
-      // Rest at the last contact and go with it; another obstacle in the way means that there is no free place.
-      const Vec2 carried = at + (1.0 - t) * dt * velocity;
+      // Rest at the last contact and go with it, on its own arc: the chord of a turning polygon would end inside it.
+      // Another obstacle in the way means that there is no free place.
+      const Vec2 belt = obstacles.beltVelocity(hit.body, hit.normal);
+      const Vec2 carried = obstacles.carriedFrom(hit.body, at, t) + (1.0 - t) * dt * belt;
       const ObstacleHit blocked = obstacles.sweep(at, carried, t, disc.radius, disc.filter);
-      at = blocked.hit ? blocked.center : carried;
-      result.crushed = blocked.hit && blocked.startedInside;
+      const bool byOther = blocked.hit && blocked.body != hit.body;
+      result.crushed = blocked.hit && (byOther || blocked.startedInside);
+      at = byOther || (blocked.hit && belt.squaredNorm() > 0.0) ? blocked.center : carried;
       break;
     }
   }
