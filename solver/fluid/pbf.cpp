@@ -257,6 +257,8 @@ void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
       target_[i] = density[i] == 0.0f ? 0.0f : std::max(density[i], 1.0f - kLoose);
     }
   });
+  // A jet that comes out becomes dense row by row; that is no compression.
+  for (const Carried& c : carried_) target_[c.particle] = 0.0f;
   runDisplacement(context, kappa_.data(), nullptr);
 }
 

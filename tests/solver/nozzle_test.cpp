@@ -1,0 +1,66 @@
+// A jet of fluid that comes out of a nozzle.
+#include <gtest/gtest.h>
+
+#include <froude/solver/world.h>
+#include "support/worlds.h"
+
+namespace froude {
+namespace {
+
+// Upwards against gravity, so that what is ahead slows down and presses on what comes after it.
+WorldDef fountain(double speed) {
+  WorldDef def;
+  def.domain.box = {{0.0, 0.0}, {1.0, 2.5}};
+  def.fluid = FluidDef{};
+  def.fluid->spacing = 0.02;
+  EmitterDef nozzle;
+  nozzle.name = "nozzle";
+  nozzle.kind = EmitterDef::Kind::Fluid;
+  nozzle.from = {0.44, 0.1};
+  nozzle.to = {0.56, 0.1};
+  nozzle.speed = speed;
+  nozzle.limit = 100000;
+  def.emitters.push_back(nozzle);
+  return def;
+}
+
+TEST(Nozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_high_as_that_carries_it) {
+  const double speed = 6.0;
+  World world(fountain(speed));
+  double top = 0.0;
+  for (int k = 0; k < 61; ++k) {
+    const StepReport report = world.step(0.01);
+    ASSERT_TRUE(report.ok()) << name(report.trouble) << " at " << world.time();
+    const ParticlePool& pool = *world.fluid();
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      top = std::max(top, pool.y()[i]);
+      if (pool.y()[i] < 0.12) {
+        EXPECT_NEAR(pool.vy()[i], speed, 1e-9);
+      }
+    }
+  }
+  // A slender jet falls freely but for what it takes to widen it. Six particles across give way as a lattice does, by
+  // jerks: measured, they rise 10 % too high on what the nozzle pushes from behind.
+  const double height = speed * speed / (2.0 * 9.81);
+  EXPECT_NEAR(top - 0.1, height, 0.12 * height);
+  // Mass comes at density · speed · width, and the books close although the nozzle holds against the jet.
+  EXPECT_NEAR(world.ledger().massEmitted, 1000.0 * speed * 0.12 * world.time(), 1000.0 * 0.12 * 0.02 * 1.5);
+  const Totals totals = world.totals();
+  const Vec2 open = totals.momentum - world.ledger().momentum0 - world.ledger().impulse;
+  EXPECT_LT(open.norm(), 1e-6 * totals.mass * speed);
+  EXPECT_LT(world.ledger().energyDrift, 0.02);
+}
+
+TEST(Nozzle, a_saved_jet_goes_on_with_the_same_bits) {
+  World straight(fountain(3.0)), stopped(fountain(3.0)), resumed(fountain(3.0));
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(straight.step(0.01).ok());
+  for (int k = 0; k < 9; ++k) ASSERT_TRUE(stopped.step(0.01).ok());
+  MemorySnapshot snapshot;
+  snapshot.save([&](Archive& a) { stopped.archive(a); });
+  snapshot.load([&](Archive& a) { resumed.archive(a); });
+  for (int k = 9; k < 20; ++k) ASSERT_TRUE(resumed.step(0.01).ok());
+  EXPECT_EQ(straight.stateHash(), resumed.stateHash());
+}
+
+}  // namespace
+}  // namespace froude
