@@ -1,6 +1,6 @@
 // What does a whole scene cost? Runs scenes from t = 0 in turn, without output, and compares them by ratio.
 //
-//   scene_bench [--threads N] [--until SECONDS] [--runs N] [--rows FILE] SCENE.toml...
+//   scene_bench [--threads N] [--until SECONDS] [--runs N] [--set PATH=VALUE]... [--rows FILE] SCENE.toml...
 //
 // Runs alternate (first scene, second, first, …), so that a machine that grows slower slows all of them. Building the
 // world is not timed. A row's item is a particle in one sub-step.
@@ -32,6 +32,7 @@ struct Options {
   double until = 0.0;  // 0: the scene's duration [s]
   std::string rows;
   std::vector<std::string> scenes;
+  std::vector<scene::Override> overrides;  // of all scenes
 };
 
 struct Outcome {
@@ -105,16 +106,18 @@ bool writeRow(const Options& options, const scene::Scene& scene, const Outcome& 
   std::snprintf(numbers, sizeof numbers, "%d,%.4g,%.4g,%.4g,%.3g,%zu", options.threads,
                 o.simulated / static_cast<double>(o.ledger.substeps), 1e9 * median(o.wall) / steps,
                 1e9 * *std::min_element(o.wall.begin(), o.wall.end()) / steps, o.ledger.maxDensityError, o.wall.size());
-  char length[32];
-  std::snprintf(length, sizeof length, "%g s", o.simulated);
-  out << "scene,\"" << scene.name << " to " << length << "\",\"" << run::cpuName() << "\","
+  char length[64];
+  std::snprintf(length, sizeof length, "%zu particles to %g s", o.particles, o.simulated);
+  out << "scene,\"" << scene.name << ", " << length << "\",\"" << run::cpuName() << "\","
       << std::thread::hardware_concurrency() << ',' << FROUDE_COMMIT << ",release," << name(scene.world.simd) << ','
       << numbers << '\n';
   return out.good();
 }
 
 int usage() {
-  std::fprintf(stderr, "usage: scene_bench [--threads N] [--until SECONDS] [--runs N] [--rows FILE] SCENE.toml...\n");
+  std::fprintf(stderr,
+               "usage: scene_bench [--threads N] [--until SECONDS] [--runs N] [--set PATH=VALUE]... [--rows FILE] "
+               "SCENE.toml...\n");
   return 2;
 }
 
@@ -140,6 +143,11 @@ int main(int argc, char** argv) {
       options.until = std::atof(argv[++i]);
     } else if (word == "--runs") {
       options.runs = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--set") {
+      const std::string text = argv[++i];
+      const std::size_t equals = text.find('=');
+      if (equals == std::string::npos) return usage();
+      options.overrides.push_back({text.substr(0, equals), text.substr(equals + 1)});
     } else if (word == "--rows") {
       options.rows = argv[++i];
     } else {
@@ -152,7 +160,7 @@ int main(int argc, char** argv) {
   }
   try {
     std::vector<scene::Scene> scenes;
-    for (const std::string& file : options.scenes) scenes.push_back(scene::load(file));
+    for (const std::string& file : options.scenes) scenes.push_back(scene::load(file, options.overrides));
     std::vector<Outcome> outcomes(scenes.size());
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(options.threads));

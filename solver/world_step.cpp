@@ -105,6 +105,7 @@ StepBound World::Impl::chooseStep(double maxDt) const {
 
 // What came in broken (a user's columns, say) is taken out before it spreads.
 void World::Impl::quarantine() {
+  if (started && !edited && present.finite) return;  // nothing came in since the last sub-step was found sound
   auto check = [&](ParticlePool& pool, double mass) {
     if (sumParticles(pool, def.simd).finite()) return;
     const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
