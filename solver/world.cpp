@@ -40,6 +40,10 @@ World::Impl::Impl(const WorldDef& definition)
   if (def.fluid) {
     if (!(def.fluid->spacing > 0.0)) throw Error("fluid spacing must be a positive length");
     if (!(def.fluid->density > 0.0)) throw Error("fluid density must be positive");
+    if (!(def.fluid->viscosity >= 0.0) || !std::isfinite(def.fluid->viscosity)) {
+      throw Error("fluid viscosity must be at least 0 m²/s");
+    }
+    if (def.fluid->surfaceTension != 0.0) throw Error("surface tension is not in this version; leave it 0");
     checkPeriod(def);
     fluid = makePool("fluid");
     fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);
@@ -51,6 +55,11 @@ World::Impl::Impl(const WorldDef& definition)
   }
   if (def.bullet) {
     if (!(def.bullet->radius > 0.0)) throw Error("bullet radius must be a positive length");
+    if (!(def.bullet->density > 0.0)) throw Error("bullet density must be positive");
+    if (!(def.bullet->friction >= 0.0)) throw Error("bullet friction must be at least 0");
+    if (!(def.bullet->restitution >= 0.0 && def.bullet->restitution <= 1.0)) {
+      throw Error("bullet restitution must be between 0 and 1");
+    }
     bullets = makePool("bullets");
     ballistic = std::make_unique<Ballistic>(*def.bullet);
     bulletExpires = bullets->addColumn<double>("expires", ColumnKind::State);

@@ -53,7 +53,8 @@ class FROUDE_API World {
 
   /// Advances by exactly dt [s], finite, in as many sub-steps as the bounds ask for. dt ≤ 0 does nothing.
   StepReport step(double dt);
-  /// One accepted sub-step of the length that the bounds allow, at most `maxDt` [s].
+  /// One accepted sub-step of the length that the bounds allow, at most `maxDt` [s]; nothing happens unless that is
+  /// above 0.
   StepReport substep(double maxDt = kInfinity);
 
   double time() const;

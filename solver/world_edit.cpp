@@ -205,6 +205,7 @@ std::vector<ParticleHandle> World::add(Species species, std::span<const Vec2> po
   const CollisionFilter filter = w.filterOf(species);
   const Obstacles& solids = w.solids();
   for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!velocities[i].allFinite()) throw Error("the velocity of particle " + std::to_string(i) + " is not finite");
     if (!w.def.domain.box.contains(positions[i]) || solids.distance(positions[i], filter).distance < 0.0) {
       throw Error("particle " + std::to_string(i) + " at (" + std::to_string(positions[i].x()) + ", " +
                   std::to_string(positions[i].y()) + ") lies inside a solid or outside the domain");

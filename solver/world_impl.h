@@ -50,6 +50,8 @@ struct World::Impl {
   void retire();
   void tellSinks(const ParticlePool& pool);
   void emit(double dt);
+  void findMouth(const EmitterDef& nozzle, double dt);
+  bool hasRoom(const Vec2& at);
   void publishBodies(double dt);
   void account(const StepStats& stats, double dt);
   bool needsUndo() const { return fluidModel != nullptr; }
@@ -106,6 +108,7 @@ struct World::Impl {
   double time = 0.0;
   double gravityScale = 0.0;      // largest |g| seen [m/s²]
   Balance present;                // of the state as it stands
+  std::vector<Vec2> mouth;        // work space of emit: places that are taken
   std::optional<Balance> judged;  // of the state that judge() saw, and whether particles came or went since
   bool membersChanged = false;
   bool anyLifetime = false;

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kLargestTurn = 0.5;         // [rad] of a body in a sub-step
 constexpr double kLargestBodyTravel = 0.25;  // of the support radius in a sub-step, where there is a fluid
+constexpr double kRoom = 0.85;               // [dx] between a particle that a nozzle lets in and any other
 constexpr double kFreeStep = 0.01;           // [s] where nothing binds the step
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
@@ -17,6 +18,7 @@ double wrapped(double x, double low, double high) { return x - std::floor((x - l
 StepReport World::substep(double maxDt) {
   Impl& w = *impl_;
   StepReport report;
+  if (!(maxDt > 0.0)) return report;
   w.ledger.steps += w.insideStep ? 0 : 1;
   if (!w.insideStep) w.events.clear();
   w.quarantine();
@@ -196,6 +198,32 @@ void World::Impl::judge(StepStats& stats, double dt) {
   if (gain > def.limits.energyGain) fail(Trouble::EnergyGain, gain, def.limits.energyGain);
 }
 
+// What stands where a nozzle lets particles in during a sub-step.
+void World::Impl::findMouth(const EmitterDef& nozzle, double dt) {
+  const double dx = def.fluid->spacing;
+  Box box;
+  for (const Vec2& p : {nozzle.from, nozzle.to}) {
+    box.include(p);
+    box.include(Vec2(p + dt * nozzle.speed * leftNormal(nozzle.to - nozzle.from).normalized()));
+  }
+  box = box.grown(2.0 * dx);
+  mouth.clear();
+  for (std::size_t i = 0; i < fluid->size(); ++i) {
+    const Vec2 at(fluid->x()[i], fluid->y()[i]);
+    if (box.contains(at)) mouth.push_back(at);
+  }
+}
+
+// A particle that were put among others would be thrown out by their pressure. Rows of a nozzle are a spacing apart.
+bool World::Impl::hasRoom(const Vec2& at) {
+  const double least = kRoom * def.fluid->spacing;
+  for (const Vec2& other : mouth) {
+    if ((other - at).squaredNorm() < least * least) return false;
+  }
+  mouth.push_back(at);
+  return true;
+}
+
 void World::Impl::emit(double dt) {
   for (std::size_t k = 0; k < emitters.size(); ++k) {
     Emitter& emitter = emitters[k];
@@ -215,7 +243,12 @@ void World::Impl::emit(double dt) {
       std::uint64_t removed = 0;
       remove(pool, mass, removed);
     }
+    if (isFluid) findMouth(emitter.def(), dt);
     auto place = [&](const Vec2& position, const Vec2& velocity) {
+      if (isFluid && !hasRoom(position)) {
+        ++ledger.refused;
+        return;
+      }
       const ParticleHandle handle = pool.tryCreate();
       if (handle.isNull()) {
         ++ledger.refused;
@@ -240,7 +273,9 @@ void World::Impl::emit(double dt) {
       ledger.work += mass * (0.5 * velocity.squaredNorm() + potentialOf(position));
     };
     const std::uint64_t before = emitter.refused();
-    emitter.emit(start, dt, place, emitter.room(live));
+    // More than the limit in one sub-step would be its own oldest.
+    const bool recycles = emitter.def().policy == GrowthPolicy::RecycleOldest;
+    emitter.emit(start, dt, place, recycles ? emitter.def().limit : emitter.room(live));
     ledger.refused += emitter.refused() - before;
   }
 }

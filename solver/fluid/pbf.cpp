@@ -460,6 +460,10 @@ void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
               [&](std::size_t begin, std::size_t end) { loops.viscosity(pairs, loop, begin, end); });
   for (Carried& c : carried_) {
     const std::uint32_t i = c.particle;
+    if (walls_.tangent()[i] > 0.0f) {  // of its way along a wall the share λ is the wall's
+      const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
+      c.spared -= static_cast<double>(walls_.lambda()[i]) * along.dot(c.spared) * along;
+    }
     c.spared += context.dt / dx_ * Vec2(static_cast<double>(smoothX_[i]), static_cast<double>(smoothY_[i]));
     smoothX_[i] = smoothY_[i] = 0.0f;
   }

@@ -34,7 +34,8 @@ void BodySet::check(const BodyDef& def) {
   if (!def.velocity.allFinite() || !std::isfinite(def.spin) || !std::isfinite(def.surfaceVelocity)) {
     refuse("has a velocity that is not finite");
   }
-  if (!(def.friction >= 0.0) || !(def.restitution >= 0.0)) refuse("needs friction and restitution of at least 0");
+  if (!(def.friction >= 0.0)) refuse("needs a friction of at least 0");
+  if (!(def.restitution >= 0.0 && def.restitution <= 1.0)) refuse("needs a restitution between 0 and 1");
 }
 
 BodySet::BodySet(std::vector<BodyDef> definitions) : originals_(std::move(definitions)) {

@@ -51,6 +51,43 @@ TEST(Nozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_hig
   EXPECT_LT(world.ledger().energyDrift, 0.02);
 }
 
+TEST(Nozzle, a_drowned_nozzle_refuses_what_has_no_room_and_counts_it) {
+  WorldDef def = fountain(1.0);
+  World world(def);
+  std::vector<Vec2> water;
+  for (double y = 0.01; y < 0.4; y += 0.02) {
+    for (double x = 0.01; x < 1.0; x += 0.02) water.emplace_back(x, y);
+  }
+  world.addFluid(water, std::vector<Vec2>(water.size(), Vec2(0.0, 0.0)));
+  for (int k = 0; k < 30; ++k) {
+    const StepReport report = world.step(0.01);
+    ASSERT_TRUE(report.ok()) << name(report.trouble) << " at " << world.time();
+  }
+  EXPECT_GT(world.ledger().refused, 0u);
+  EXPECT_EQ(world.fluid()->size(), water.size() + world.ledger().emitted);
+  EXPECT_LT(world.ledger().maxSpeed, 2.0);
+}
+
+TEST(Nozzle, recycling_keeps_the_limit_in_every_sub_step) {
+  WorldDef def;
+  def.domain.box = {{0.0, 0.0}, {1.0, 1.0}};
+  def.bullet = BulletDef{};
+  EmitterDef gun;
+  gun.kind = EmitterDef::Kind::Bullet;
+  gun.from = {0.4, 0.5};
+  gun.to = {0.6, 0.5};
+  gun.speed = 1.0;
+  gun.rate = 1e5;
+  gun.limit = 100;
+  gun.policy = GrowthPolicy::RecycleOldest;
+  def.emitters.push_back(gun);
+  World world(def);
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_TRUE(world.substep(0.01).ok());
+    EXPECT_LE(world.bullets()->size(), 100u);
+  }
+}
+
 TEST(Nozzle, a_saved_jet_goes_on_with_the_same_bits) {
   World straight(fountain(3.0)), stopped(fountain(3.0)), resumed(fountain(3.0));
   for (int k = 0; k < 20; ++k) ASSERT_TRUE(straight.step(0.01).ok());

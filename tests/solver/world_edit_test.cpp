@@ -163,6 +163,28 @@ TEST(WorldEdit, definitions_that_would_break_a_step_are_refused_before_it) {
   EXPECT_EQ(narrow.step(kInfinity).substeps + narrow.step(std::nan("")).substeps + narrow.step(-1.0).substeps, 0);
 }
 
+TEST(WorldEdit, what_cannot_be_right_is_refused_when_it_comes_in) {
+  WorldDef def = bulletWorld();
+  def.bullet->restitution = 5.0;
+  EXPECT_THROW(World{def}, Error);
+  WorldDef fluid = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.05);
+  fluid.fluid->viscosity = -1.0;
+  EXPECT_THROW(World{fluid}, Error);
+  fluid.fluid->viscosity = 0.0;
+  fluid.fluid->surfaceTension = 0.07;
+  EXPECT_THROW(World{fluid}, Error);
+  World world(bulletWorld());
+  EXPECT_THROW(shoot(world, {1.0, 1.0}, {std::nan(""), 0.0}), Error);
+  shoot(world, {1.0, 1.0}, {1.0, 0.0});
+  const std::string before = world.stateHash();
+  for (const double dt : {0.0, -1.0, std::nan("")}) {
+    const StepReport report = world.substep(dt);
+    EXPECT_TRUE(report.ok());
+    EXPECT_EQ(report.substeps, 0);
+  }
+  EXPECT_EQ(world.stateHash(), before);
+}
+
 TEST(WorldEdit, a_body_by_call_meets_particles_like_one_of_the_definition) {
   for (const bool moving : {false, true}) {
     const BodyDef wall =
