@@ -25,22 +25,10 @@ void visitBySource(Nearest& nearest, std::span<const GridEdge> edges, std::span<
 
 }  // namespace
 
-double squaredDistance(const GridEdge& edge, const Vec2& p) {
-  const Vec2 arm = p - edge.a;
-  const double along = edge.direction.dot(arm);
-  if (along <= 0.0) return arm.squaredNorm();
-  if (along >= edge.length) return (p - edge.b).squaredNorm();
-  const double left = cross(edge.direction, arm);
-  return left * left;
-}
-
 FieldSample EdgeGrid::sample(const Vec2& p) const {
   if (!inGrid(p)) return freeOutside() ? bound(p, lowerBound(p)) : sampleExact(p);
-  const std::size_t cell = cellOf(p);
-  // Most cells of a large domain are far: one look-up tells.
-  if (clearance_[cell] > farther_) return bound(p, clearance_[cell]);
-  const std::span<const std::uint32_t> candidates = nearest(cell);
-  if (candidates.empty()) return bound(p, clearance_[cell]);
+  const std::span<const std::uint32_t> candidates = nearestAt(p);
+  if (candidates.empty()) return bound(p, clearance_[cellOf(p)]);
   Nearest closest{*this, p};
   visitBySource(closest, edges_, candidates, [](std::uint32_t) { return true; });
   FROUDE_ASSERT(closest.any);
@@ -128,7 +116,7 @@ bool EdgeGrid::contains(std::uint32_t source, const Vec2& p) const {
 
 std::size_t EdgeGrid::memoryBytes() const {
   return edges_.capacity() * sizeof(GridEdge) + clearance_.capacity() * sizeof(float) +
-         (next_.capacity() + sourceStarts_.capacity() + listOf_.capacity() + lists_.capacity() +
+         (next_.capacity() + sourceStarts_.capacity() + codes_.capacity() + partCodes_.capacity() + lists_.capacity() +
           coarseListOf_.capacity() + coarseLists_.capacity()) *
              sizeof(std::uint32_t);
 }

@@ -8,33 +8,11 @@
 
 #include <froude/base/api.h>
 #include <froude/base/parallel.h>
-#include <froude/base/transform.h>
+#include <froude/fields/cell_code.h>
 #include <froude/fields/field_sample.h>
-#include <froude/fields/polygon.h>
+#include <froude/fields/grid_edge.h>
 
 namespace froude::detail {
-
-/// A directed edge, solid on its left. One cache line.
-struct alignas(64) GridEdge {
-  Vec2 a, b;
-  Vec2 direction;                 ///< unit, from a to b
-  double length;                  ///< [m]
-  std::int32_t previous;          ///< edge that ends where this one starts; −1: the outline begins here
-  std::uint32_t source : 30;      ///< which outline it belongs to; edges of a source are contiguous and in order
-  std::uint32_t convexStart : 1;  ///< the solid's angle at a is less than 180 degrees
-  std::uint32_t convexEnd : 1;    ///< the solid's angle at b is less than 180 degrees
-
-  Vec2 normal() const { return rightNormal(direction); }
-};
-
-/// Appends the edges of `polygon`, placed by `transform` if there is one.
-void appendEdges(const Polygon& polygon, const Transform* transform, std::uint32_t source,
-                 std::vector<GridEdge>* edges);
-/// The edge a → b of `source`, which follows edge `previous` of `edges` (−1: none); appended.
-void appendEdge(const Vec2& a, const Vec2& b, std::int32_t previous, std::uint32_t source,
-                std::vector<GridEdge>* edges);
-/// Squared distance of p to the closed edge [m²].
-double squaredDistance(const GridEdge& edge, const Vec2& p);
 
 /// Cells are exact to this multiple of the band, so that a disc as large as the band finds its contact even where its
 /// path is known only up to a deviation.
@@ -51,9 +29,9 @@ struct GridPlan {
 };
 
 /// Cells over a box. A cell within the band of an outline lists the edges that are closest, of their own outline, to at
-/// least one of the cell's points: those no farther than the farthest point of the closest edge. Other cells are wholly
-/// outside or wholly inside and keep a clearance. A coarser grid lists all edges within the band, for queries that must
-/// not lose any.
+/// least one of the cell's points; where these are many the cell is divided once more, and each part has its own list.
+/// Other cells are wholly outside or wholly inside and keep a clearance. A coarser grid lists all edges within the
+/// band, for queries that must not lose any.
 class FROUDE_API EdgeGrid {
  public:
   EdgeGrid(std::vector<GridEdge> edges, const GridPlan& plan);
@@ -73,7 +51,8 @@ class FROUDE_API EdgeGrid {
   int nx() const { return nx_; }
   int ny() const { return ny_; }
   const Box& box() const { return box_; }
-  std::span<const float> clearance() const { return clearance_; }
+  std::span<const float> clearance() const { return {clearance_.data(), cellCount()}; }
+  std::size_t cellCount() const { return static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_); }
   std::span<const GridEdge> edges() const { return edges_; }
   /// Edge that starts where edge i ends; −1: the outline ends there.
   std::int32_t next(std::uint32_t i) const { return next_[i]; }
@@ -92,30 +71,53 @@ class FROUDE_API EdgeGrid {
     return static_cast<std::size_t>(row(p.y())) * static_cast<std::size_t>(nx_) +
            static_cast<std::size_t>(column(p.x()));
   }
-  /// Nearest edges of a cell; empty for a cell that is farther than the band from every outline.
-  std::span<const std::uint32_t> nearest(std::size_t cell) const { return list(lists_, listOf_[cell]); }
-  double inverseCell() const { return inverseCell_; }
+  /// Edges that can be nearest in a cell; empty for a cell that is farther than the band from every outline.
+  std::span<const std::uint32_t> nearest(std::size_t cell) const { return list(codeOfWhole(codes_[cell])); }
+  /// Edges that can be nearest at p, which is in the grid: those of its cell, or of the part of the cell.
+  std::span<const std::uint32_t> nearestAt(const Vec2& p) const {
+    const double x = (p.x() - box_.min.x()) * inverseCell_;
+    const double y = (p.y() - box_.min.y()) * inverseCell_;
+    const int i = std::clamp(static_cast<int>(x), 0, nx_ - 1);
+    const int j = std::clamp(static_cast<int>(y), 0, ny_ - 1);
+    const CellCode code =
+        codes_[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(i)];
+    return list(isDivided(code) ? partCodes_[partIndex(code, x - i, y - j)] : code);
+  }
+  double inverseCellSize() const { return inverseCell_; }
   int coarseness() const { return coarse_; }
   /// All edges within the band of any point of the coarse cell around p; p in the grid.
   std::span<const std::uint32_t> within(const Vec2& p) const {
     const int i = column(p.x()) / coarse_;
     const int j = row(p.y()) / coarse_;
-    return list(
-        coarseLists_,
-        coarseListOf_[static_cast<std::size_t>(j) * static_cast<std::size_t>(coarseNx_) + static_cast<std::size_t>(i)]);
+    const std::uint32_t at =
+        coarseListOf_[static_cast<std::size_t>(j) * static_cast<std::size_t>(coarseNx_) + static_cast<std::size_t>(i)];
+    return {coarseLists_.data() + at + 1, coarseLists_[at]};
   }
+
+  /// The arrays, raw, for loops over lanes; behind the last cell there is one more, which is empty.
+  std::span<const CellCode> codes() const { return codes_; }
+  std::span<const CellCode> partCodes() const { return partCodes_; }
+  std::span<const std::uint32_t> lists() const { return lists_; }
+  /// Closer than this to a feature, signs are decided exactly [m].
+  double rounding() const { return rounding_; }
+  /// True if all edges belong to one outline.
+  bool oneOutline() const { return sourceStarts_.size() == 2; }
 
  private:
   friend class EdgeGridBuilder;
+  friend class EdgeSieve;
   struct Nearest;
 
-  static std::span<const std::uint32_t> list(const std::vector<std::uint32_t>& lists, std::uint32_t at) {
-    return {lists.data() + at + 1, lists[at]};
+  /// Code of the list of a whole cell, divided or not.
+  CellCode codeOfWhole(CellCode code) const { return isDivided(code) ? partCodes_[firstPart(code) - 1] : code; }
+  std::span<const std::uint32_t> list(CellCode code) const {
+    const std::uint32_t* at = lists_.data() + listOffset(code);
+    if (const std::uint32_t count = listCount(code); count > 0) return {at, count};
+    return {at + 1, *at};
   }
   void layOut(const GridPlan& plan);
   /// True if every point outside the grid is outside everything.
   bool freeOutside() const { return sealed_ && !walls_; }
-  bool oneOutline() const { return sourceStarts_.size() == 2; }
   FieldSample bound(const Vec2& p, double clearance) const;
   FieldSample searchRings(const Vec2& p, double clearance) const;
   FieldSample makeSample(const Vec2& p, std::uint32_t edge, bool inside) const;
@@ -128,7 +130,6 @@ class FROUDE_API EdgeGrid {
   double cell_ = 0.0;
   double inverseCell_ = 0.0;
   double band_ = 0.0;
-  float farther_ = 0.0F;  // a clearance above it is that of a cell without edges
   double scale_ = 0.0;
   double rounding_ = 0.0;  // closer than this, signs are decided exactly
   bool sealed_ = true;
@@ -138,8 +139,9 @@ class FROUDE_API EdgeGrid {
   int coarse_ = 1;  // cells along one side of a coarse cell
   int coarseNx_ = 0;
   int coarseNy_ = 0;
-  std::vector<std::uint32_t> listOf_;  // per cell: where its list is in lists_ (count, then edges); 0: the empty list
-  std::vector<std::uint32_t> lists_;
+  std::vector<CellCode> codes_;       // per cell
+  std::vector<CellCode> partCodes_;   // of divided cells: the code of the whole, then those of its parts
+  std::vector<std::uint32_t> lists_;  // edges of all lists, one after the other; see cell_code.h
   std::vector<float> clearance_;
   std::vector<std::uint32_t> coarseListOf_;
   std::vector<std::uint32_t> coarseLists_;

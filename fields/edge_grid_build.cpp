@@ -1,90 +1,34 @@
 // Builds the cells of an EdgeGrid from the top down: a square of cells passes on to its quarters only the edges that
 // can be closest there, so that the work follows the boundary, not the area.
-#include <array>
-
 #include <froude/fields/edge_grid.h>
-#include <froude/fields/edge_grid_nearest.h>
+#include <froude/fields/edge_sieve.h>
 #include <froude/fields/predicates.h>
 
 namespace froude::detail {
 namespace {
 
-using Corners = std::array<Vec2, 4>;
-using Squares = std::array<double, 4>;  // squared distances of something to the corners of a box
+/// Cells along one side of the squares that are worked on in parallel.
+constexpr int kTaskSide = 16;
+/// A cell that lists more edges than this is divided once more,
+constexpr std::size_t kCrowded = 2;
+/// and one that lists more than this into more parts.
+constexpr std::size_t kVeryCrowded = 8;
+/// Parts that do not shorten the lists to this share of the whole cell's are not kept.
+constexpr double kWorthDividing = 0.75;
 
-Corners cornersOf(const Box& box) {
-  return {box.min, Vec2(box.max.x(), box.min.y()), box.max, Vec2(box.min.x(), box.max.y())};
-}
+struct Square {
+  int i, j, side;
 
-struct Reach {
-  double least;     // distance of the box's nearest point to the edge
-  double most;      // of its farthest: the distance to a convex set is convex, so that is a corner
-  Squares squares;  // of the corners to the edge
+  Square quarter(int q) const { return {i + (q & 1) * (side / 2), j + (q >> 1) * (side / 2), side / 2}; }
 };
 
-Reach reachOf(const GridEdge& e, const Box& box) {
-  const Corners corners = cornersOf(box);
-  Reach reach{};
-  for (std::size_t k = 0; k < 4; ++k) reach.squares[k] = squaredDistance(e, corners[k]);
-  double least = *std::min_element(reach.squares.begin(), reach.squares.end());
-  for (const Vec2& end : {e.a, e.b}) {
-    const Vec2 out = (box.min - end).cwiseMax(end - box.max).cwiseMax(0.0);
-    least = std::min(least, out.squaredNorm());
-  }
-  if (least > 0.0 && least < box.size().squaredNorm()) {
-    // Passing through without an end inside: it must cross a diagonal.
-    if (segmentContact(e.a, e.b, corners[0], corners[2]) != SegmentContact::None ||
-        segmentContact(e.a, e.b, corners[1], corners[3]) != SegmentContact::None) {
-      least = 0.0;
-    }
-  }
-  reach.least = std::sqrt(least);
-  reach.most = std::sqrt(*std::max_element(reach.squares.begin(), reach.squares.end()));
-  return reach;
-}
-
-Vec2 closestPoint(const GridEdge& e, const Vec2& p) {
-  return e.a + std::clamp(e.direction.dot(p - e.a), 0.0, e.length) * e.direction;
-}
-
-/// Tells which edges can be closest to some point of a box. For two points p and q, |x − p|² − |x − q|² is linear in x,
-/// so if at all corners an edge is farther than q, each of its points is, everywhere in the box. The points q tried are
-/// those of the outline that are closest to the corners and to the centre.
-class Rivals {
- public:
-  Rivals(std::span<const GridEdge> edges, std::span<const std::uint32_t> candidates, std::span<const Reach> reaches,
-         const Box& box, double rounding)
-      : margin_(rounding) {
-    const Corners corners = cornersOf(box);
-    std::array<std::size_t, 5> winner{};
-    Squares best;
-    best.fill(kInfinity);
-    double center = kInfinity;
-    for (std::size_t k = 0; k < reaches.size(); ++k) {
-      for (std::size_t c = 0; c < 4; ++c) {
-        if (reaches[k].squares[c] < best[c]) best[c] = reaches[k].squares[c], winner[c] = k;
-      }
-      const double square = squaredDistance(edges[candidates[k]], box.center());
-      if (square < center) center = square, winner[4] = k;
-    }
-    for (std::size_t c = 0; c < 5; ++c) {
-      const Vec2 q = closestPoint(edges[candidates[winner[c]]], c < 4 ? corners[c] : box.center());
-      for (std::size_t k = 0; k < 4; ++k) squares_[c][k] = (corners[k] - q).squaredNorm();
-    }
-  }
-
-  bool beat(const Reach& reach) const {
-    return std::any_of(squares_.begin(), squares_.end(), [&](const Squares& q) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        if (reach.squares[k] <= q[k] * (1.0 + 1e-12) + margin_ * (std::sqrt(q[k]) + margin_)) return false;
-      }
-      return true;
-    });
-  }
-
- private:
-  double margin_;
-  std::array<Squares, 5> squares_;
+/// A square of cells with the edges that it can need, and what the task that fills it has found. Offsets in its codes
+/// count from the beginning of its own lists.
+struct Piece {
+  Square square;
+  std::vector<std::uint32_t> candidates;
+  std::vector<std::uint32_t> lists;  // from offset 1 on, so that no code of a cell with edges is 0
+  std::vector<CellCode> partCodes;
 };
 
 float towardsZero(double value) {
@@ -92,167 +36,224 @@ float towardsZero(double value) {
   return std::abs(static_cast<double>(rounded)) > std::abs(value) ? std::nextafter(rounded, 0.0F) : rounded;
 }
 
+int squareOver(int nx, int ny) {
+  int side = 1;
+  while (side < std::max(nx, ny)) side *= 2;
+  return side;
+}
+
+/// Where the part of each piece begins when all are put one after the other behind `start`.
+template <typename Size>
+std::vector<std::size_t> startsOf(const std::vector<Piece>& pieces, std::size_t start, const Size& size) {
+  std::vector<std::size_t> starts{start};
+  for (const Piece& piece : pieces) starts.push_back(starts.back() + size(piece));
+  return starts;
+}
+
 }  // namespace
 
 class EdgeGridBuilder {
  public:
-  explicit EdgeGridBuilder(EdgeGrid& grid) : g_(grid) {
-    const std::size_t cells = static_cast<std::size_t>(g_.nx_) * static_cast<std::size_t>(g_.ny_);
-    g_.listOf_.assign(cells, 0);
-    g_.clearance_.assign(cells, std::numeric_limits<float>::infinity());
-    g_.lists_.assign(1, 0);
-    g_.coarseLists_.assign(1, 0);
-    g_.coarseListOf_.assign(static_cast<std::size_t>(g_.coarseNx_) * static_cast<std::size_t>(g_.coarseNy_), 0);
-  }
+  explicit EdgeGridBuilder(EdgeGrid& grid) : g_(grid), reach_(g_.band_ * kBandMargin + g_.rounding_) {}
 
-  void build() {
-    int side = 1;
-    while (side < std::max(g_.nx_, g_.ny_)) side *= 2;
-    candidates_.resize(g_.edges_.size());
-    for (std::uint32_t i = 0; i < g_.edges_.size(); ++i) candidates_[i] = i;
-    const std::size_t all = candidates_.size();
-    divideNearest({0, 0, side}, 0, all);
+  /// False if the codes of the cells have no room for so many lists; the cells must be larger then.
+  bool build() {
+    g_.codes_.assign(g_.cellCount() + 1, 0);
+    g_.clearance_.assign(g_.cellCount() + 1, std::numeric_limits<float>::infinity());
+    std::vector<Piece> pieces = piecesOf(squareOver(g_.nx_, g_.ny_),
+                                         [this](EdgeSieve& sieve, const Square& s, std::size_t begin, std::size_t end) {
+                                           const bool deep = !keepNearest(sieve, s, begin, end);
+                                           if (deep) markDeep(s);
+                                           return !deep;
+                                         });
+    parallelFor(pieces.size(), 1, [&](std::size_t k, std::size_t) { fill(pieces[k]); });
+    if (!join(pieces)) return false;
     spreadClearance();
-    candidates_.resize(all);
-    lastList_ = 0;
-    side = 1;
-    while (side < std::max(g_.coarseNx_, g_.coarseNy_)) side *= 2;
-    divideWithin({0, 0, side}, 0, all);
-    g_.lists_.shrink_to_fit();
-    g_.coarseLists_.shrink_to_fit();
-  }
-
- private:
-  struct Square {
-    int i, j, side;
-  };
-  /// The edges of one source that a square keeps: a range of candidates_.
-  struct Group {
-    std::size_t begin, end;
-    double least, most;  // distance of any point of the square to the outline
-    bool inside;         // the whole square is, if least > 0
-  };
-
-  /// A hair larger than the cells, so that a point that rounding puts into a neighbour still finds its edges.
-  Box boxOf(const Square& s, double cell) const {
-    const Vec2 corner = g_.box_.min + Vec2(s.i, s.j) * cell;
-    return Box{corner, corner + Vec2(s.side, s.side) * cell}.grown(1e-6 * cell);
-  }
-
-  /// Candidates [begin, end) are what the square's parent kept. Leaves candidates_ as it was.
-  void divideNearest(const Square& s, std::size_t begin, std::size_t end) {
-    if (s.i >= g_.nx_ || s.j >= g_.ny_) return;
-    const std::size_t mark = candidates_.size();
-    const std::size_t groupMark = groups_.size();
-    const bool deep = !keepNearest(boxOf(s, g_.cell_), begin, end);
-    if (deep) {
-      markDeep(s);
-    } else if (candidates_.size() > mark) {
-      if (s.side == 1) {
-        storeCell(s, mark, groupMark);
-      } else {
-        const std::size_t kept = candidates_.size();
-        const int half = s.side / 2;
-        for (int q = 0; q < 4; ++q) {
-          divideNearest({s.i + (q & 1) * half, s.j + (q >> 1) * half, half}, mark, kept);
-        }
-      }
-    }
-    candidates_.resize(mark);
-    groups_.resize(groupMark);
-  }
-
-  /// Appends the edges that may be closest to a point of `box`, source by source, and their groups. False if the whole
-  /// box is inside one of them, deeper than the band.
-  bool keepNearest(const Box& box, std::size_t begin, std::size_t end) {
-    const std::size_t groupMark = groups_.size();
-    double upper = kInfinity;  // no point of the box is farther than this from its nearest source
-    while (begin < end) {
-      const std::uint32_t source = g_.edges_[candidates_[begin]].source;
-      std::size_t groupEnd = begin;
-      double least = kInfinity;
-      double most = kInfinity;
-      reaches_.clear();
-      for (; groupEnd < end && g_.edges_[candidates_[groupEnd]].source == source; ++groupEnd) {
-        reaches_.push_back(reachOf(g_.edges_[candidates_[groupEnd]], box));
-        least = std::min(least, reaches_.back().least);
-        most = std::min(most, reaches_.back().most);
-      }
-      const bool inside = least > 0.0 && centerInside(box.center(), begin, groupEnd);
-      if (least > reach()) {
-        if (inside) return false;
-      } else {
-        const std::size_t first = candidates_.size();
-        keepUnbeaten(box, begin, most);
-        groups_.push_back({first, candidates_.size(), least, most, inside});
-        upper = std::min(upper, most);
-      }
-      begin = groupEnd;
-    }
-    dropDominated(groupMark, upper);
+    buildCoarse();
     return true;
   }
 
-  /// Appends those of the candidates from `begin` on, whose reaches_ are known, that can be closest in the box.
-  void keepUnbeaten(const Box& box, std::size_t begin, double most) {
-    const std::span<const std::uint32_t> group(candidates_.data() + begin, reaches_.size());
-    const Rivals rivals(g_.edges_, group, reaches_, box, g_.rounding_);
-    for (std::size_t k = 0; k < reaches_.size(); ++k) {
-      if (reaches_[k].least > most * (1.0 + 1e-12) + g_.rounding_ || rivals.beat(reaches_[k])) continue;
-      candidates_.push_back(candidates_[begin + k]);
+ private:
+  /// A hair larger than the cells, so that a point that rounding puts into a neighbour still finds its edges.
+  Box boxOf(const Square& s, double cell) const {
+    const Vec2 corner = g_.box_.min + Vec2(s.i, s.j) * cell;
+    return Box{corner, corner + Vec2(s.side, s.side) * cell}.grown(1e-6 * g_.cell_);
+  }
+
+  bool keepNearest(EdgeSieve& sieve, const Square& s, std::size_t begin, std::size_t end) const {
+    return sieve.keepNearest(boxOf(s, g_.cell_), begin, end, {reach_, s.side == 1 || !g_.oneOutline()});
+  }
+
+  /// Squares of at most kTaskSide cells that keep any edges. `keep` sieves for a square and says whether to go on.
+  template <typename Keep>
+  std::vector<Piece> piecesOf(int side, const Keep& keep) const {
+    EdgeSieve sieve(g_);
+    for (std::uint32_t e = 0; e < g_.edges_.size(); ++e) sieve.stack().push_back(e);
+    std::vector<Piece> pieces;
+    collect(sieve, {0, 0, side}, 0, sieve.stack().size(), keep, &pieces);
+    return pieces;
+  }
+
+  template <typename Keep>
+  void collect(EdgeSieve& sieve, const Square& s, std::size_t begin, std::size_t end, const Keep& keep,
+               std::vector<Piece>* pieces) const {
+    const std::size_t mark = sieve.stack().size();
+    if (s.i < g_.nx_ && s.j < g_.ny_ && keep(sieve, s, begin, end) && sieve.stack().size() > mark) {
+      const std::size_t kept = sieve.stack().size();
+      if (s.side <= kTaskSide) {
+        const auto first = sieve.stack().begin() + static_cast<std::ptrdiff_t>(mark);
+        pieces->push_back({s, {first, sieve.stack().end()}, {0}, {}});
+      } else {
+        for (int q = 0; q < 4; ++q) collect(sieve, s.quarter(q), mark, kept, keep, pieces);
+      }
+    }
+    sieve.stack().resize(mark);
+    sieve.groups().clear();
+  }
+
+  void fill(Piece& piece) {
+    EdgeSieve sieve(g_);
+    sieve.stack() = piece.candidates;
+    const std::size_t all = sieve.stack().size();
+    if (piece.square.side == 1) {
+      fillSquare(sieve, piece.square, 0, all, piece);
+    } else {
+      for (int q = 0; q < 4; ++q) fillSquare(sieve, piece.square.quarter(q), 0, all, piece);
     }
   }
 
-  /// A source that lies outside the box and farther than another's farthest point is nowhere the nearest.
-  void dropDominated(std::size_t groupMark, double upper) {
-    if (groups_.size() < groupMark + 2) return;
-    std::size_t to = groups_[groupMark].begin;
-    std::size_t kept = groupMark;
-    for (std::size_t g = groupMark; g < groups_.size(); ++g) {
-      Group group = groups_[g];
-      if (!group.inside && group.least > upper * (1.0 + 1e-12) + g_.rounding_) continue;
-      const std::size_t first = to;
-      for (std::size_t k = group.begin; k < group.end; ++k) candidates_[to++] = candidates_[k];
-      group.begin = first;
-      group.end = to;
-      groups_[kept++] = group;
+  /// Candidates [begin, end) are what the square's parent kept. Leaves the stacks as they were.
+  void fillSquare(EdgeSieve& sieve, const Square& s, std::size_t begin, std::size_t end, Piece& piece) {
+    if (s.i >= g_.nx_ || s.j >= g_.ny_) return;
+    const std::size_t mark = sieve.stack().size();
+    const std::size_t groupMark = sieve.groups().size();
+    if (!keepNearest(sieve, s, begin, end)) {
+      markDeep(s);
+    } else if (sieve.stack().size() > mark) {
+      if (s.side == 1) {
+        storeCell(sieve, s, mark, groupMark, piece);
+      } else {
+        const std::size_t kept = sieve.stack().size();
+        for (int q = 0; q < 4; ++q) fillSquare(sieve, s.quarter(q), mark, kept, piece);
+      }
     }
-    groups_.resize(kept);
-    candidates_.resize(to);
+    sieve.stack().resize(mark);
+    sieve.groups().resize(groupMark);
   }
 
-  bool centerInside(const Vec2& center, std::size_t begin, std::size_t end) const {
-    EdgeGrid::Nearest nearest{g_, center};
-    for (std::size_t k = begin; k < end; ++k) nearest.consider(candidates_[k]);
-    nearest.closeSource(g_.edges_[candidates_[begin]].source);
-    return nearest.any && nearest.best < 0.0;
-  }
-
-  void storeCell(const Square& s, std::size_t mark, std::size_t groupMark) {
-    const std::size_t cell = cellIndex(s.i, s.j);
-    g_.listOf_[cell] = storeList(g_.lists_, mark);
+  void storeCell(EdgeSieve& sieve, const Square& s, std::size_t mark, std::size_t groupMark, Piece& piece) {
     double outside = kInfinity;
     double depth = 0.0;
-    for (std::size_t k = groupMark; k < groups_.size(); ++k) {
-      if (groups_[k].inside) depth = std::max(depth, groups_[k].least);
-      outside = std::min(outside, groups_[k].least);
+    for (std::size_t k = groupMark; k < sieve.groups().size(); ++k) {
+      const EdgeSieve::Group& group = sieve.groups()[k];
+      if (group.inside) depth = std::max(depth, group.least);
+      outside = std::min(outside, group.least);
     }
+    const std::size_t cell = cellIndex(s.i, s.j);
     g_.clearance_[cell] = towardsZero(depth > 0.0 ? -depth : outside);
+    const bool oneSource = sieve.groups().size() == groupMark + 1;
+    const CellCode code = storeList(sieve.stack(), mark, oneSource, piece);
+    const std::size_t count = sieve.stack().size() - mark;
+    g_.codes_[cell] = oneSource && count > kCrowded ? divideCell(sieve, s, mark, code, piece) : code;
   }
 
-  /// Neighbouring cells often keep the same edges: the last list is used again where it fits.
-  std::uint32_t storeList(std::vector<std::uint32_t>& lists, std::size_t mark) {
-    const std::size_t count = candidates_.size() - mark;
-    if (count == 0) return 0;
-    if (lastList_ > 0 && lastList_ < lists.size() && lists[lastList_] == count &&
-        std::equal(candidates_.begin() + static_cast<std::ptrdiff_t>(mark), candidates_.end(),
-                   lists.begin() + lastList_ + 1)) {
-      return lastList_;
+  /// The code of the divided cell, or `whole` if its parts are hardly better off.
+  CellCode divideCell(EdgeSieve& sieve, const Square& s, std::size_t mark, CellCode whole, Piece& piece) const {
+    const std::size_t count = sieve.stack().size() - mark;
+    const std::uint32_t shift = count > kVeryCrowded ? kManyPartsShift : kPartsShift;
+    const std::size_t partsMark = piece.partCodes.size();
+    const std::size_t listsMark = piece.lists.size();
+    piece.partCodes.push_back(whole);
+    piece.partCodes.resize(partsMark + 1 + (std::size_t{1} << (2 * shift)));
+    Parts parts{s, shift, piece.partCodes.data() + partsMark + 1};
+    const std::size_t end = sieve.stack().size();
+    for (int q = 0; q < 4; ++q) fillPart(sieve, Square{0, 0, 1 << shift}.quarter(q), mark, end, parts, piece);
+    const double mean = static_cast<double>(parts.listed) / static_cast<double>(std::size_t{1} << (2 * shift));
+    if (mean > kWorthDividing * static_cast<double>(count)) {
+      piece.partCodes.resize(partsMark);
+      piece.lists.resize(listsMark);
+      return whole;
     }
-    lastList_ = static_cast<std::uint32_t>(lists.size());
-    lists.push_back(static_cast<std::uint32_t>(count));
-    lists.insert(lists.end(), candidates_.begin() + static_cast<std::ptrdiff_t>(mark), candidates_.end());
-    return lastList_;
+    return dividedCode(static_cast<std::uint32_t>(partsMark + 1), shift);
+  }
+
+  struct Parts {
+    Square cell;
+    std::uint32_t shift;
+    CellCode* codes;
+    std::size_t listed = 0;  // edges in the lists of all parts
+  };
+
+  /// Square `s` in parts of the cell; the candidates are [begin, end) of the stack. However far a part is, it keeps its
+  /// nearest edges.
+  void fillPart(EdgeSieve& sieve, const Square& s, std::size_t begin, std::size_t end, Parts& parts,
+                Piece& piece) const {
+    const double size = g_.cell_ / (1 << parts.shift);
+    const Vec2 corner = g_.box_.min + Vec2(parts.cell.i, parts.cell.j) * g_.cell_ + Vec2(s.i, s.j) * size;
+    const Box box = Box{corner, corner + Vec2(s.side, s.side) * size}.grown(1e-6 * g_.cell_);
+    const std::size_t mark = sieve.stack().size();
+    const std::size_t groupMark = sieve.groups().size();
+    sieve.keepNearest(box, begin, end, {kInfinity, false});
+    const std::size_t count = sieve.stack().size() - mark;
+    if (s.side == 1 || count <= kCrowded) {
+      const CellCode code = storeList(sieve.stack(), mark, true, piece);
+      for (int j = s.j; j < s.j + s.side; ++j) {
+        for (int i = s.i; i < s.i + s.side; ++i) parts.codes[(j << parts.shift) + i] = code;
+      }
+      parts.listed += count * static_cast<std::size_t>(s.side * s.side);
+    } else {
+      for (int q = 0; q < 4; ++q) fillPart(sieve, s.quarter(q), mark, mark + count, parts, piece);
+    }
+    sieve.stack().resize(mark);
+    sieve.groups().resize(groupMark);
+  }
+
+  /// Stores the stack from `mark` on. Neighbours often keep the same edges: the last list is used again where it fits.
+  static CellCode storeList(const std::vector<std::uint32_t>& stack, std::size_t mark, bool oneSource, Piece& piece) {
+    const std::size_t count = stack.size() - mark;
+    if (count == 1) return listCode(stack[mark], 1);
+    const auto first = stack.begin() + static_cast<std::ptrdiff_t>(mark);
+    const bool counted = oneSource && count <= kMostListed;
+    std::vector<std::uint32_t>& lists = piece.lists;
+    if (counted && lists.size() > count &&
+        std::equal(first, stack.end(), lists.end() - static_cast<std::ptrdiff_t>(count))) {
+      return listCode(static_cast<std::uint32_t>(lists.size() - count), static_cast<std::uint32_t>(count));
+    }
+    const auto offset = static_cast<std::uint32_t>(lists.size());
+    if (!counted) lists.push_back(static_cast<std::uint32_t>(count));
+    lists.insert(lists.end(), first, stack.end());
+    return listCode(offset, counted ? static_cast<std::uint32_t>(count) : 0);
+  }
+
+  /// Puts the pieces one after the other.
+  bool join(std::vector<Piece>& pieces) {
+    const auto lists = startsOf(pieces, std::max<std::size_t>(1, g_.edges_.size()),
+                                [](const Piece& piece) { return piece.lists.size(); });
+    const auto parts = startsOf(pieces, 0, [](const Piece& piece) { return piece.partCodes.size(); });
+    if (lists.back() > kListOffsetMask || parts.back() > kFirstPartMask) return false;
+    g_.lists_.resize(lists.back());
+    g_.lists_[0] = 0;
+    for (std::uint32_t e = 0; e < g_.edges_.size(); ++e) g_.lists_[e] = e;
+    g_.partCodes_.resize(parts.back());
+    parallelFor(pieces.size(), 1, [&](std::size_t k, std::size_t) {
+      const Piece& piece = pieces[k];
+      const auto listBase = static_cast<std::uint32_t>(lists[k]);
+      const auto partBase = static_cast<std::uint32_t>(parts[k]);
+      const auto moved = [&](CellCode code) {
+        if (code == 0 || (!isDivided(code) && listCount(code) == 1)) return code;
+        return code + (isDivided(code) ? partBase : listBase);
+      };
+      std::copy(piece.lists.begin(), piece.lists.end(), g_.lists_.begin() + listBase);
+      std::transform(piece.partCodes.begin(), piece.partCodes.end(), g_.partCodes_.begin() + partBase, moved);
+      const Square& s = piece.square;
+      for (int j = s.j; j < std::min(s.j + s.side, g_.ny_); ++j) {
+        for (int i = s.i; i < std::min(s.i + s.side, g_.nx_); ++i) {
+          CellCode& code = g_.codes_[cellIndex(i, j)];
+          code = moved(code);
+        }
+      }
+    });
+    return true;
   }
 
   void markDeep(const Square& s) {
@@ -271,90 +272,74 @@ class EdgeGridBuilder {
     const int ny = g_.ny_;
     constexpr float kFar = 1e9F;
     constexpr float kDiagonal = 1.41421356F;
-    std::vector<float> steps(g_.listOf_.size());
-    for (std::size_t c = 0; c < steps.size(); ++c) steps[c] = g_.listOf_[c] != 0 ? 0.0F : kFar;
-    const float border = g_.sealed_ ? kFar : 1.0F;  // outside an unsealed box there may be anything
-    const auto at = [&](int i, int j) {
-      return i < 0 || i >= nx || j < 0 || j >= ny ? border - 1.0F : steps[cellIndex(i, j)];
-    };
-    const auto relax = [&](int i, int j, int dir) {
-      float& here = steps[cellIndex(i, j)];
-      here = std::min({here, at(i - dir, j) + 1.0F, at(i, j - dir) + 1.0F, at(i - 1, j - dir) + kDiagonal,
-                       at(i + 1, j - dir) + kDiagonal});
-    };
+    // With a border of one cell, so that no cell needs to know whether it stands at the edge. Outside an unsealed box
+    // there may be anything.
+    const std::size_t stride = static_cast<std::size_t>(nx) + 2;
+    std::vector<float> steps(stride * (static_cast<std::size_t>(ny) + 2), g_.sealed_ ? kFar : 0.0F);
+    const auto row = [&](int j) { return steps.data() + static_cast<std::size_t>(j + 1) * stride + 1; };
     for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) relax(i, j, 1);
+      for (int i = 0; i < nx; ++i) row(j)[i] = g_.codes_[cellIndex(i, j)] != 0 ? 0.0F : kFar;
     }
-    for (int j = ny - 1; j >= 0; --j) {
-      for (int i = nx - 1; i >= 0; --i) relax(i, j, -1);
-    }
-    for (std::size_t c = 0; c < steps.size(); ++c) {
-      if (g_.listOf_[c] != 0) continue;
-      const double cells = std::max(0.0, steps[c] * 0.923 - 1.4143);
-      const double far = steps[c] >= 0.5F * kFar ? kInfinity : g_.band_ * kBandMargin + cells * g_.cell_;
-      g_.clearance_[c] = towardsZero(std::copysign(far, static_cast<double>(g_.clearance_[c])));
-    }
+    const auto sweep = [&](int j, int dir) {
+      float* here = row(j);
+      const float* behind = row(j - dir);
+      for (int i = 0; i < nx; ++i) {
+        here[i] = std::min(std::min(here[i], behind[i] + 1.0F), std::min(behind[i - 1], behind[i + 1]) + kDiagonal);
+      }
+      const int first = dir > 0 ? 0 : nx - 1;
+      for (int k = 0, i = first; k < nx; ++k, i += dir) here[i] = std::min(here[i], here[i - dir] + 1.0F);
+    };
+    for (int j = 0; j < ny; ++j) sweep(j, 1);
+    for (int j = ny - 1; j >= 0; --j) sweep(j, -1);
+    parallelFor(static_cast<std::size_t>(ny), 64, [&](std::size_t begin, std::size_t end) {
+      for (auto j = static_cast<int>(begin); j < static_cast<int>(end); ++j) {
+        for (int i = 0; i < nx; ++i) {
+          const std::size_t c = cellIndex(i, j);
+          if (g_.codes_[c] != 0) continue;
+          const float far = row(j)[i];
+          const double cells = std::max(0.0, static_cast<double>(far) * 0.923 - 1.4143);
+          const double clearance = far >= 0.5F * kFar ? kInfinity : g_.band_ * kBandMargin + cells * g_.cell_;
+          g_.clearance_[c] = towardsZero(std::copysign(clearance, static_cast<double>(g_.clearance_[c])));
+        }
+      }
+    });
   }
 
   /// Coarse cells: every edge within reach, of every source.
-  void divideWithin(const Square& s, std::size_t begin, std::size_t end) {
-    if (s.i >= g_.coarseNx_ || s.j >= g_.coarseNy_) return;
-    const std::size_t mark = candidates_.size();
-    const Box box = boxOf(s, g_.cell_ * g_.coarse_);
-    for (std::size_t k = begin; k < end; ++k) {
-      if (reachOf(g_.edges_[candidates_[k]], box).least <= reach()) candidates_.push_back(candidates_[k]);
-    }
-    const std::size_t kept = candidates_.size();
-    if (kept > mark) {
-      if (s.side == 1) {
-        g_.coarseListOf_[static_cast<std::size_t>(s.j) * static_cast<std::size_t>(g_.coarseNx_) +
-                         static_cast<std::size_t>(s.i)] = storeList(g_.coarseLists_, mark);
-      } else {
-        const int half = s.side / 2;
-        for (int q = 0; q < 4; ++q) {
-          divideWithin({s.i + (q & 1) * half, s.j + (q >> 1) * half, half}, mark, kept);
-        }
-      }
-    }
-    candidates_.resize(mark);
+  void buildCoarse() {
+    const double cell = g_.cell_ * g_.coarse_;
+    g_.coarseListOf_.assign(static_cast<std::size_t>(g_.coarseNx_) * static_cast<std::size_t>(g_.coarseNy_), 0);
+    g_.coarseLists_.assign(1, 0);
+    EdgeSieve sieve(g_);
+    for (std::uint32_t e = 0; e < g_.edges_.size(); ++e) sieve.stack().push_back(e);
+    divideWithin(sieve, {0, 0, squareOver(g_.coarseNx_, g_.coarseNy_)}, 0, cell);
+    g_.coarseLists_.shrink_to_fit();
   }
 
-  double reach() const { return g_.band_ * kBandMargin + g_.rounding_; }
+  void divideWithin(EdgeSieve& sieve, const Square& s, std::size_t begin, double cell) {
+    if (s.i >= g_.coarseNx_ || s.j >= g_.coarseNy_) return;
+    const std::size_t mark = sieve.stack().size();
+    sieve.keepWithin(boxOf(s, cell), begin, mark, reach_);
+    const std::size_t count = sieve.stack().size() - mark;
+    if (count > 0 && s.side == 1) {
+      g_.coarseListOf_[static_cast<std::size_t>(s.j) * static_cast<std::size_t>(g_.coarseNx_) +
+                       static_cast<std::size_t>(s.i)] = static_cast<std::uint32_t>(g_.coarseLists_.size());
+      g_.coarseLists_.push_back(static_cast<std::uint32_t>(count));
+      g_.coarseLists_.insert(g_.coarseLists_.end(), sieve.stack().begin() + static_cast<std::ptrdiff_t>(mark),
+                             sieve.stack().end());
+    } else if (count > 0) {
+      for (int q = 0; q < 4; ++q) divideWithin(sieve, s.quarter(q), mark, cell);
+    }
+    sieve.stack().resize(mark);
+  }
 
   std::size_t cellIndex(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(g_.nx_) + static_cast<std::size_t>(i);
   }
 
   EdgeGrid& g_;
-  std::vector<std::uint32_t> candidates_;  // a stack: each level of squares appends what it keeps
-  std::vector<Group> groups_;
-  std::vector<Reach> reaches_;
-  std::uint32_t lastList_ = 0;
+  const double reach_;
 };
-
-void appendEdge(const Vec2& a, const Vec2& b, std::int32_t previous, std::uint32_t source,
-                std::vector<GridEdge>* edges) {
-  GridEdge e;
-  e.a = a;
-  e.b = b;
-  e.length = (b - a).stableNorm();
-  e.direction = (b - a) / e.length;
-  e.previous = previous;
-  e.source = source & 0x3FFFFFFFu;
-  e.convexStart = 0;
-  e.convexEnd = 0;
-  edges->push_back(e);
-}
-
-void appendEdges(const Polygon& polygon, const Transform* transform, std::uint32_t source,
-                 std::vector<GridEdge>* edges) {
-  const auto base = static_cast<std::int32_t>(edges->size());
-  const auto place = [&](const Vec2& v) { return transform == nullptr ? v : transform->toWorld(v); };
-  for (std::uint32_t i = 0; i < polygon.edgeCount(); ++i) {
-    appendEdge(place(polygon.edgeStart(i)), place(polygon.edgeEnd(i)),
-               base + static_cast<std::int32_t>(polygon.previous(i)), source, edges);
-  }
-}
 
 EdgeGrid::EdgeGrid(std::vector<GridEdge> edges, const GridPlan& plan) : edges_(std::move(edges)) {
   next_.assign(edges_.size(), -1);
@@ -370,13 +355,12 @@ EdgeGrid::EdgeGrid(std::vector<GridEdge> edges, const GridPlan& plan) : edges_(s
     outlines_.include(e.b);
   }
   sourceStarts_.push_back(static_cast<std::uint32_t>(edges_.size()));
-  layOut(plan);
-  EdgeGridBuilder(*this).build();
+  GridPlan roomy = plan;
+  for (layOut(roomy); !EdgeGridBuilder(*this).build(); layOut(roomy)) roomy.cellSize = 1.5 * cell_;
 }
 
 void EdgeGrid::layOut(const GridPlan& plan) {
   band_ = plan.band;
-  farther_ = static_cast<float>(band_ * (kBandMargin + 1e-3));
   sealed_ = plan.sealed;
   const Vec2 size = plan.box.size();
   cell_ = plan.cellSize;

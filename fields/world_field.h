@@ -89,6 +89,8 @@ class FROUDE_API WorldField {
   /// Per cell: no point of the cell is closer to a solid than this [m]. 0 where a boundary passes, negative deep
   /// inside. Nothing solid is within r of any point of a cell whose value exceeds r.
   std::span<const float> clearance() const { return grid_.clearance(); }
+  /// The cells, for swept and batch queries.
+  const detail::EdgeGrid& grid() const { return grid_; }
 
  private:
   struct Source {
