@@ -47,7 +47,9 @@ bool fits(std::span<T> column, std::size_t count) {
   return column.empty() || column.size() == count;
 }
 
-void run(const detail::EdgeGrid& grid, const Transform& pose, const FieldBatch& b, SimdTarget target) {
+}  // namespace
+
+void detail::checkColumns(const FieldBatch& b) {
   const std::size_t count = b.x.size();
   if (b.y.size() != count || !fits(b.distance, count) || !fits(b.normalX, count) || !fits(b.closestX, count) ||
       !fits(b.edge, count) || !fits(b.feature, count)) {
@@ -56,10 +58,16 @@ void run(const detail::EdgeGrid& grid, const Transform& pose, const FieldBatch& 
   if (b.normalX.size() != b.normalY.size() || b.closestX.size() != b.closestY.size()) {
     throw Error("a batch wants x and y of normals and closest points, or neither");
   }
+}
+
+namespace {
+
+void run(const detail::EdgeGrid& grid, const Transform& pose, const FieldBatch& b, SimdTarget target) {
+  detail::checkColumns(b);
   const bool placed = pose.position != Vec2(0.0, 0.0) || pose.rotation.c != 1.0 || pose.rotation.s != 0.0;
   const detail::BatchTask task{&grid, &b, pose, placed};
   const detail::BatchLoop loop = detail::batchLoop(target);
-  parallelFor(count, kBatchBlock, [&](std::size_t begin, std::size_t end) { loop(task, begin, end); });
+  parallelFor(b.x.size(), kBatchBlock, [&](std::size_t begin, std::size_t end) { loop(task, begin, end); });
 }
 
 }  // namespace

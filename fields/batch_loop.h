@@ -6,6 +6,9 @@
 
 namespace froude::detail {
 
+/// Throws Error if a column has another length than the points.
+void checkColumns(const FieldBatch& batch);
+
 /// Points [begin, end) of the batch; the pose has been judged to be the identity or not.
 struct BatchTask {
   const EdgeGrid* grid;
