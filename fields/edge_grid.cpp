@@ -38,6 +38,39 @@ FieldSample EdgeGrid::sample(const Vec2& p) const {
   return makeSample(p, closest.bestEdge, closest.best < 0.0);
 }
 
+double EdgeGrid::distance(const Vec2& p, bool* exact) const {
+  *exact = false;
+  if (!inGrid(p)) return lowerBound(p);
+  const std::span<const std::uint32_t> candidates = nearestAt(p);
+  if (candidates.empty()) return clearance_[cellOf(p)];
+  *exact = true;
+  double inside = kInfinity;
+  double outside = kInfinity;
+  if (oneOutline()) {
+    // As Nearest, but without a branch that depends on the point.
+    for (const std::uint32_t index : candidates) {
+      const GridEdge& e = edges_[index];
+      const Vec2 arm = p - e.a;
+      const double along = e.direction.dot(arm);
+      const double left = cross(e.direction, arm);
+      const bool vertex = along < 0.0;
+      const double square = along > e.length ? kInfinity : (vertex ? arm.squaredNorm() : left * left);
+      const bool within = vertex ? e.convexStart == 0 : left > 0.0;
+      inside = std::min(inside, within ? square : kInfinity);
+      outside = std::min(outside, within ? kInfinity : square);
+    }
+  }
+  const double nearer = std::min(inside, outside);
+  const double gap = inside - outside;
+  const double rounding = rounding_ * rounding_;
+  if (!(gap * gap > 4.0 * rounding * std::max(nearer, rounding)) || !(nearer > rounding) || nearer == kInfinity) {
+    const FieldSample s = sample(p);
+    *exact = s.exact;
+    return s.distance;
+  }
+  return std::copysign(std::sqrt(nearer), gap);
+}
+
 FieldSample EdgeGrid::sampleExact(const Vec2& p) const {
   if (inGrid(p)) {
     const FieldSample near = sample(p);

@@ -38,6 +38,9 @@ class FROUDE_API EdgeGrid {
 
   FieldSample sample(const Vec2& p) const;
   FieldSample sampleExact(const Vec2& p) const;
+  /// The distance of `sample` alone, to rounding, or a bound of it: for many a sweep that is all there is to know.
+  /// `exact` as in FieldSample.
+  double distance(const Vec2& p, bool* exact) const;
   /// Over the sources that `accepts` says; exact for |distance| ≤ band.
   FieldSample sampleAccepted(const Vec2& p, FunctionRef<bool(std::uint32_t)> accepts) const;
   double lowerBound(const Vec2& p) const;

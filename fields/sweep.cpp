@@ -13,10 +13,16 @@ double skinFor(const EdgeGrid& grid, std::initializer_list<Vec2> points) {
   return kSweepSkin * scale;
 }
 
+FieldSample startOf(const EdgeGrid& grid, const Vec2& center) {
+  FieldSample start;
+  start.distance = grid.distance(center, &start.exact);
+  return start;
+}
+
 bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& center, const Chord& chord,
                   SweepHit* hit) {
   if (!(atStart.distance < chord.radius - chord.skin) || (!atStart.exact && atStart.distance > 0.0)) return false;
-  const FieldSample sample = atStart.exact ? atStart : grid.sampleExact(center);
+  const FieldSample sample = grid.sampleExact(center);
   *hit = {true, 0.0, center, sample.closest, sample.normal, sample.edge, -1, true};
   return true;
 }
@@ -181,8 +187,7 @@ Transform RigidMotion::at(double t) const {
 SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to, double radius) {
   FROUDE_ASSERT(radius >= 0.0 && radius <= field.band());
   if (!detail::finitePath(from, to)) return {};
-  const EdgeGrid& grid = field.grid();
-  return detail::sweepStill(grid, from, to, radius, grid.sample(from), nullptr);
+  return detail::sweepStill(field.grid(), from, to, radius, detail::startOf(field.grid(), from), nullptr);
 }
 
 SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double dt, const Vec2& from, const Vec2& to,
@@ -195,10 +200,7 @@ SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double
   const Vec2 end = motion.start.position + dt * motion.velocity;
   const double skin = detail::skinFor(grid, {from, to, motion.start.position, end});
   const Vec2 start = path.at(0.0);
-  // As in WorldField::sweepDisc: a bound tells most.
-  FieldSample atStart;
-  atStart.distance = grid.lowerBound(start);
-  if (!(atStart.distance > radius + 2.0 * skin)) atStart = grid.sample(start);
+  const FieldSample atStart = detail::startOf(grid, start);
   // The end matters to a polygon that does not turn; the other path is followed in chords of its own.
   const Vec2 stop = path.turn == 0.0 ? path.at(1.0) : start;
   const Chord whole{start, stop, radius, skin, detail::floorFor(radius, skin, atStart.distance)};

@@ -12,6 +12,9 @@ inline bool finitePath(const Vec2& from, const Vec2& to) { return from.allFinite
 /// The skin for coordinates up to the largest of the grid and these points [m].
 double skinFor(const EdgeGrid& grid, std::initializer_list<Vec2> points);
 
+/// Where a sweep starts: its distance alone, or a bound of it.
+FieldSample startOf(const EdgeGrid& grid, const Vec2& center);
+
 /// Fills `hit` and returns true if a disc at `center` overlaps by more than the skin, given the field's answer there.
 bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& center, const Chord& chord,
                   SweepHit* hit);

@@ -127,11 +127,7 @@ SweepHit WorldField::sweepDisc(const Vec2& from, const Vec2& to, double radius, 
   if (!detail::finitePath(from, to)) return {};
   SweepHit hit;
   if (acceptsAll(filter)) {
-    // From the distance at its start a sweep learns whether it overlaps there or is in contact; a bound may tell.
-    FieldSample atStart;
-    atStart.distance = grid_.lowerBound(from);
-    if (!(atStart.distance > radius + 2.0 * detail::skinFor(grid_, {from, to}))) atStart = grid_.sample(from);
-    hit = detail::sweepStill(grid_, from, to, radius, atStart, nullptr);
+    hit = detail::sweepStill(grid_, from, to, radius, detail::startOf(grid_, from), nullptr);
   } else {
     const auto accepted = [&](std::uint32_t source) { return accepts(filter, source); };
     const detail::SourceFilter sources(accepted);
