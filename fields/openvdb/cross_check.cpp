@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20010;  // of the points; any number
 constexpr double kReach = 2.0;          // [voxels] how far from a point the interpolant and its difference look
+constexpr double kMargin = 1.0;         // [voxels] OpenVDB's band has gaps near its edge
 // Half the points lie along the edges, half around the vertices: corners are what a level set finds hard.
 constexpr std::size_t kCornerShare = 2;
 
@@ -55,14 +56,13 @@ std::vector<Vec2> pointsNear(const Polygon& polygon, double reach, std::size_t c
   return points;
 }
 
-/// True if the interior of the edge closest to p is closest all over the disc of `radius` about p: own distance grows and
-/// others shrink by no more than the radius each.
+/// True if the interior of the edge closest to p is closest all over the disc of `radius` about p: own distance grows
+/// and others shrink by no more than the radius each.
 bool isClear(const DistanceField& field, const Vec2& p, const FieldSample& s, double radius) {
   if (s.feature != FeatureKind::Edge) return false;
   bool alone = true;
-  field.forEachEdgeNear(p, std::abs(s.distance) + 2.0 * radius, [&](std::uint32_t e) {
-    alone = alone && static_cast<std::int32_t>(e) == s.edge;
-  });
+  field.forEachEdgeNear(p, std::abs(s.distance) + 2.0 * radius,
+                        [&](std::uint32_t e) { alone = alone && static_cast<std::int32_t>(e) == s.edge; });
   return alone;
 }
 
@@ -78,7 +78,7 @@ CrossCheckRow compare(const Polygon& polygon, int division, const CrossCheckOpti
   row.voxelSize = h;
   row.rounding = roundingOf(division, options.halfBand);
   const DistanceField field(polygon, (options.halfBand + 2.0 * kReach) * h);
-  const LevelSet set(polygon, h, options.halfBand + kReach);
+  const LevelSet set(polygon, h, options.halfBand + kReach + kMargin);
   row.activeVoxels = set.activeVoxels();
   row.memoryBytes = set.memoryBytes();
 

@@ -1,5 +1,5 @@
-// The one file that includes OpenVDB: level sets from meshes, and .vdb files. It compiles slowly; nothing else belongs here.
-// Points are put into their leaves by hand: OpenVDB's own conversion takes as long to compile as all the rest.
+// The one file that includes OpenVDB: level sets from meshes, and .vdb files. It compiles slowly; nothing else belongs
+// here. Points are put into their leaves by hand: OpenVDB's own conversion takes as long to compile as all the rest.
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointDataGrid.h>
@@ -29,8 +29,8 @@ constexpr double kMostVoxels = 8192.0;  // along a side
 constexpr double kMostBand = 100.0;     // [voxels]
 // Caps lie so much beyond the band [voxels]: farther than any node of the middle plane looks.
 constexpr double kCapMargin = 2.0;
-// Where the grid of nodes lies against the polygons' centre [voxels]: nowhere in particular, so that no edge of a box runs
-// along a row of nodes, which would be exact by chance and on no side.
+// Where the grid of nodes lies against the polygons' centre [voxels]: nowhere in particular, so that no edge of a box
+// runs along a row of nodes, which would be exact by chance and on no side.
 const Vec2 kGridOffset(0.381966, 0.276393);
 constexpr double kPointsPerVoxel = 16.0;
 
@@ -215,8 +215,8 @@ double pointVoxel(const Points& points) {
   if (points.size() == 0) return 1.0;
   const Vec2 size = box.size();
   const double count = static_cast<double>(points.size());
-  const double voxel = std::max(std::sqrt(size.x() * size.y() * kPointsPerVoxel / count),
-                                size.maxCoeff() * kPointsPerVoxel / count);
+  const double voxel =
+      std::max(std::sqrt(size.x() * size.y() * kPointsPerVoxel / count), size.maxCoeff() * kPointsPerVoxel / count);
   return voxel > 0.0 ? voxel : 1.0;
 }
 
@@ -325,8 +325,7 @@ struct GridFile {
         readPoints(*points, found.points);
       } else if (const auto values = vdb::gridPtrCast<vdb::FloatGrid>(grid)) {
         if (values->getGridClass() == vdb::GRID_LEVEL_SET) {
-          found.levelSets.emplace(grid->getName(),
-                                  LevelSet(std::make_unique<LevelSet::Impl>(LevelSet::Impl{values})));
+          found.levelSets.emplace(grid->getName(), LevelSet(std::make_unique<LevelSet::Impl>(LevelSet::Impl{values})));
           continue;
         }
         double sum = 0.0;

@@ -6,6 +6,13 @@
 namespace froude::vdb {
 namespace {
 
+// OpenVDB quarters the faces of a mesh of fewer faces than this again and again (tools::MeshToVolume, POLYGON_LIMIT)
+// and measures the nodes around a quarter's first corner against that quarter alone: half a voxel wrong, here and
+// there. It takes the faces of a larger mesh whole; then such corners are vertices, which all lie on the caps, far from
+// the middle plane. So caps are sliced. Walls stay whole: a node beyond the first two layers is measured against its
+// neighbours' faces only.
+constexpr std::size_t kWholeFaces = 1000;
+
 /// An edge from below to above; horizontal ones bound no trapezoid at a side.
 struct Side {
   Vec2 low, high;
@@ -38,8 +45,8 @@ std::vector<Side> sidesOf(const Polygon& polygon) {
   return sides;
 }
 
-/// Between two neighbouring heights the sides, from left to right, bound the solid in pairs. A pair that stays together over
-/// several heights is one trapezoid.
+/// Between two neighbouring heights the sides, from left to right, bound the solid in pairs. A pair that stays together
+/// over several heights is one trapezoid.
 std::vector<Trapezoid> trapezoidsOf(const Polygon& polygon) {
   const std::vector<Side> sides = sidesOf(polygon);
   std::vector<double> heights;
@@ -51,9 +58,7 @@ std::vector<Trapezoid> trapezoidsOf(const Polygon& polygon) {
   std::vector<Open> open, next;
   std::vector<std::uint32_t> cut;
   std::uint32_t entering = 0;
-  const auto close = [&](const Open& o, double top) {
-    done.push_back({sides[o.left], sides[o.right], o.bottom, top});
-  };
+  const auto close = [&](const Open& o, double top) { done.push_back({sides[o.left], sides[o.right], o.bottom, top}); };
   for (std::size_t k = 0; k + 1 < heights.size(); ++k) {
     const double bottom = heights[k], middle = 0.5 * (bottom + heights[k + 1]);
     std::erase_if(cut, [&](std::uint32_t s) { return sides[s].high.y() <= bottom; });
@@ -76,6 +81,25 @@ std::vector<Trapezoid> trapezoidsOf(const Polygon& polygon) {
   return done;
 }
 
+/// The part of a trapezoid between two heights, on both caps.
+template <typename Vertex>
+void addSlice(const Trapezoid& t, double bottom, double top, const Vertex& vertex, QuadMesh& mesh) {
+  const Vec2 southWest(t.left.xAt(bottom), bottom), southEast(t.right.xAt(bottom), bottom),
+      northEast(t.right.xAt(top), top), northWest(t.left.xAt(top), top);
+  std::vector<Vec2> ring{southWest};
+  for (const Vec2& corner : {southEast, northEast, northWest})
+    if (corner != ring.back() && corner != southWest) ring.push_back(corner);
+  if (ring.size() < 3) return;
+  for (const double side : {1.0, -1.0}) {
+    std::array<std::uint32_t, 4> face{0, 0, 0, QuadMesh::kNoVertex};
+    for (std::size_t j = 0; j < ring.size(); ++j) {
+      const Vec2& corner = ring[side > 0.0 ? j : ring.size() - 1 - j];
+      face[j] = vertex(corner.x(), corner.y(), side);
+    }
+    mesh.faces.push_back(face);
+  }
+}
+
 }  // namespace
 
 void addPrism(const Polygon& polygon, const Vec2& origin, double unit, double halfHeight, QuadMesh& mesh) {
@@ -86,25 +110,19 @@ void addPrism(const Polygon& polygon, const Vec2& origin, double unit, double ha
   };
   for (std::uint32_t e = 0; e < polygon.edgeCount(); ++e) {
     const Vec2 &a = polygon.edgeStart(e), &b = polygon.edgeEnd(e);
-    mesh.faces.push_back({vertex(a.x(), a.y(), -1.0), vertex(b.x(), b.y(), -1.0), vertex(b.x(), b.y(), 1.0),
-                          vertex(a.x(), a.y(), 1.0)});
+    mesh.faces.push_back(
+        {vertex(a.x(), a.y(), -1.0), vertex(b.x(), b.y(), -1.0), vertex(b.x(), b.y(), 1.0), vertex(a.x(), a.y(), 1.0)});
   }
-  for (const Trapezoid& t : trapezoidsOf(polygon)) {
-    const Vec2 southWest(t.left.xAt(t.bottom), t.bottom), southEast(t.right.xAt(t.bottom), t.bottom),
-        northEast(t.right.xAt(t.top), t.top), northWest(t.left.xAt(t.top), t.top);
-    std::vector<Vec2> ring{southWest};
-    for (const Vec2& corner : {southEast, northEast, northWest})
-      if (corner != ring.back() && corner != southWest) ring.push_back(corner);
-    if (ring.size() < 3) continue;
-    for (const double side : {1.0, -1.0}) {
-      std::array<std::uint32_t, 4> face{0, 0, 0, QuadMesh::kNoVertex};
-      for (std::size_t j = 0; j < ring.size(); ++j) {
-        const Vec2& corner = ring[side > 0.0 ? j : ring.size() - 1 - j];
-        face[j] = vertex(corner.x(), corner.y(), side);
-      }
-      mesh.faces.push_back(face);
+  const std::vector<Trapezoid> trapezoids = trapezoidsOf(polygon);
+  const std::size_t slices = kWholeFaces / (2 * trapezoids.size()) + 1;
+  for (const Trapezoid& t : trapezoids)
+    for (std::size_t k = 0; k < slices; ++k) {
+      const auto height = [&](std::size_t j) {
+        return j == slices ? t.top
+                           : t.bottom + (t.top - t.bottom) * (static_cast<double>(j) / static_cast<double>(slices));
+      };
+      addSlice(t, height(k), height(k + 1), vertex, mesh);
     }
-  }
 }
 
 }  // namespace froude::vdb

@@ -16,10 +16,11 @@ struct QuadMesh {
   std::vector<std::array<std::uint32_t, 4>> faces;
 };
 
-/// Adds the prism |z| ≤ halfHeight over the polygon, scaled: vertex = ((x, y) − origin) / unit. One quadrilateral for each edge;
-/// both caps are cut into trapezoids along x by a sweep over the heights of the vertices, which no concave ring and no hole
-/// can mislead. Caps have vertices in the middle of edges of walls (to a float's rounding): closed for voxels, not
-/// for a solver. Cost: O(n · edges cut by a line along x), at most some 2n trapezoids a cap.
+/// Adds the prism |z| ≤ halfHeight over the polygon, scaled: vertex = ((x, y) − origin) / unit. One quadrilateral for
+/// each edge; both caps are cut into trapezoids along x by a sweep over the heights of the vertices, which no concave
+/// ring and no hole can mislead. Caps have vertices in the middle of edges of walls (to a float's rounding): closed for
+/// voxels, not for a solver. Cost: O(n · edges cut by a line along x), some 2n trapezoids a cap, sliced where they are
+/// few.
 void addPrism(const Polygon& polygon, const Vec2& origin, double unit, double halfHeight, QuadMesh& mesh);
 
 }  // namespace froude::vdb
