@@ -7,7 +7,10 @@
 #include <openvdb/tools/MeshToVolume.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 #include <tuple>
 
 #include <froude/base/assert.h>
@@ -229,7 +232,7 @@ PointDataGrid::Ptr particleGrid(const Points& points) {
     std::size_t end = begin;
     while (end < places.size() && places[end].x == places[begin].x && places[end].y == places[begin].y) ++end;
     PointLeaf& leaf = *tree->touchLeaf(vdb::Coord(places[begin].x, places[begin].y, 0));
-    leaf.initializeAttributes(descriptor, static_cast<vdb::Index>(end - begin));
+    leaf.replaceAttributeSet(new AttributeSet(descriptor, static_cast<vdb::Index>(end - begin)), true);  // it owns it
     fillLeaf(leaf, std::span(places).subspan(begin, end - begin), points, *transform);
     begin = end;
   }
@@ -287,6 +290,11 @@ void readPoints(const PointDataGrid& grid, Points& points) {
   }
 }
 
+/// What io::File writes, into a stream of ours: io::File says nothing of a disk that is full.
+struct Archive : vdb::io::Archive {
+  using vdb::io::Archive::write;
+};
+
 }  // namespace
 
 /// Both ways between files and what this program keeps.
@@ -305,9 +313,10 @@ struct GridFile {
     vdb::MetaMap meta;
     writeLabel(meta, contents.label);
     meta.insertMeta("creator", vdb::StringMetadata("Froude"));
-    vdb::io::File file(name);
-    file.write(grids, meta);
+    std::ofstream file(name, std::ios::binary | std::ios::trunc);
+    if (file) Archive().write(file, grids, /*with places of grids*/ true, meta);
     file.close();
+    if (!file) throw Error(name + ": cannot be written: " + std::strerror(errno));
   }
 
   static FrameRead read(const std::string& name) {

@@ -22,7 +22,7 @@ std::vector<std::string> printed(const std::string& shape) {
 
 TEST(FieldCheck, prints_a_row_a_voxel_size_and_says_whether_the_two_agree) {
   const std::vector<std::string> lines = printed("tri_345");
-  ASSERT_EQ(lines.size(), 9u);
+  ASSERT_EQ(lines.size(), 10u);
   EXPECT_EQ(lines[0].rfind("tri_345: 3 edges, 4 m x 3 m, against OpenVDB ", 0), 0u) << lines[0];
   for (std::size_t k = 3; k < 7; ++k) {
     EXPECT_EQ(lines[k].size(), lines[3].size()) << lines[k];

@@ -2,6 +2,7 @@
 #include <froude/fields/openvdb/prism.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "openvdb/shapes.h"

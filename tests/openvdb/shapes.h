@@ -15,7 +15,8 @@ namespace froude::test {
 inline std::map<std::string, Polygon> goldenShapes() {
   std::ifstream file(std::string(FROUDE_TEST_DATA) + "/geometry_polygons.json");
   std::map<std::string, Polygon> shapes;
-  for (const auto& [name, entry] : nlohmann::json::parse(file).at("polygons").items()) {
+  const nlohmann::json polygons = nlohmann::json::parse(file).at("polygons");
+  for (const auto& [name, entry] : polygons.items()) {
     std::vector<std::vector<Vec2>> rings;
     for (const auto& loop : entry.at("loops")) {
       rings.emplace_back();
