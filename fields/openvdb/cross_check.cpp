@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20010;  // of the points; any number
 constexpr double kReach = 2.0;          // [voxels] how far from a point the interpolant and its difference look
-constexpr double kMargin = 1.0;         // [voxels] OpenVDB's band has gaps near its edge
+constexpr double kMargin = 1.0;         // [voxels] OpenVDB's band has gaps near its edge; ours may lose a last bit
 // Half the points lie along the edges, half around the vertices: corners are what a level set finds hard.
 constexpr std::size_t kCornerShare = 2;
 
@@ -77,7 +77,7 @@ CrossCheckRow compare(const Polygon& polygon, int division, const CrossCheckOpti
   const double h = polygon.bounds().size().maxCoeff() / division;
   row.voxelSize = h;
   row.rounding = roundingOf(division, options.halfBand);
-  const DistanceField field(polygon, (options.halfBand + 2.0 * kReach) * h);
+  const DistanceField field(polygon, (options.halfBand + 2.0 * kReach + kMargin) * h);
   const LevelSet set(polygon, h, options.halfBand + kReach + kMargin);
   row.activeVoxels = set.activeVoxels();
   row.memoryBytes = set.memoryBytes();
