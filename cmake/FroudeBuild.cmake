@@ -57,10 +57,15 @@ function(froude_include_root)
 endfunction()
 
 # froude_floor(name [dependencies...] [PRIVATE headers...]): the library froude::name of all sources in the current folder
-# and below. Its public headers are those of the folder itself without the private ones and *-inl.h; see FroudeInstall.cmake.
+# and below, but for folders that are a library of their own. Its public headers are those of the folder itself without the private ones and *-inl.h; see FroudeInstall.cmake.
 function(froude_floor name)
   cmake_parse_arguments(PARSE_ARGV 1 floor "" "" "PRIVATE")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB libraries CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} */CMakeLists.txt)
+  foreach(library IN LISTS libraries)
+    get_filename_component(library ${library} DIRECTORY)
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${library}/")
+  endforeach()
   file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
   list(FILTER headers EXCLUDE REGEX "-inl\\.h$")
   foreach(header IN LISTS floor_PRIVATE)
@@ -82,6 +87,9 @@ endfunction()
 
 # What Highway is called while Froude is built, and what an installed package calls it (froudeConfig.cmake).
 set(FROUDE_HIGHWAY $<BUILD_INTERFACE:PkgConfig::hwy> $<INSTALL_INTERFACE:froude::highway>)
+
+# The same of OpenVDB and what its headers call.
+set(FROUDE_OPENVDB_LIBRARIES $<BUILD_INTERFACE:OpenVDB::openvdb> $<INSTALL_INTERFACE:froude::openvdb_library> TBB::tbb)
 
 # Gives every test of a build with sanitizers their settings, however ctest is called: a file that ctest reads first.
 function(froude_sanitizer_environment)

@@ -6,6 +6,25 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
 
+if(FROUDE_OPENVDB)
+  # In a function, since OpenVDB's module sets BUILD_SHARED_LIBS and other variables of ours; its folder is looked into for this
+  # alone, since it has modules for other libraries too. TBB stays the one found above, whatever FindTBB.cmake lies there.
+  function(froude_find_openvdb)
+    find_path(FROUDE_OPENVDB_MODULES FindOpenVDB.cmake PATH_SUFFIXES lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB
+      lib/cmake/OpenVDB lib64/cmake/OpenVDB DOC "Folder of FindOpenVDB.cmake")
+    mark_as_advanced(FROUDE_OPENVDB_MODULES)
+    if(NOT FROUDE_OPENVDB_MODULES)
+      message(FATAL_ERROR "OpenVDB was not found (Debian: libopenvdb-dev libboost-iostreams-dev). Set FROUDE_OPENVDB_MODULES "
+        "to the folder of its FindOpenVDB.cmake, or build without it: -DFROUDE_OPENVDB=OFF")
+    endif()
+    list(APPEND CMAKE_MODULE_PATH ${FROUDE_OPENVDB_MODULES})
+    set(CMAKE_FIND_PACKAGE_PREFER_CONFIG ON)
+    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)
+    find_package(OpenVDB 10 REQUIRED QUIET)
+  endfunction()
+  froude_find_openvdb()
+endif()
+
 if(FROUDE_PROGRAM)
   find_package(fmt 9 REQUIRED)
   find_package(nlohmann_json 3.11 REQUIRED)

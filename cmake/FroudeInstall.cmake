@@ -5,8 +5,12 @@ include(CMakePackageConfigHelpers)
 set(froude_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/froude)
 set(froude_pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 set(froude_parts base fields particles solver) # along the arrow: each needs those before it
+set(froude_side_parts) # beside it: each needs base and fields
+if(FROUDE_OPENVDB)
+  list(APPEND froude_side_parts openvdb)
+endif()
 
-foreach(part IN LISTS froude_parts)
+foreach(part IN LISTS froude_parts froude_side_parts)
   install(TARGETS froude_${part} EXPORT froude-${part}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
@@ -14,7 +18,10 @@ foreach(part IN LISTS froude_parts)
   get_target_property(folder froude_${part} SOURCE_DIR)
   get_target_property(headers froude_${part} FROUDE_PUBLIC_HEADERS)
   list(TRANSFORM headers PREPEND ${folder}/)
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/froude/${part})
+  # Where the include root has them: src/base/api.h is <froude/base/api.h>, fields/openvdb/… <froude/fields/openvdb/…>.
+  file(RELATIVE_PATH place ${PROJECT_SOURCE_DIR} ${folder})
+  string(REGEX REPLACE "^src/" "" place ${place})
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/froude/${place})
 endforeach()
 install(TARGETS froude_umbrella EXPORT froude-umbrella)
 install(EXPORT froude-umbrella NAMESPACE froude:: FILE froude-umbrella-targets.cmake DESTINATION ${froude_package_dir})
@@ -39,6 +46,10 @@ function(froude_pkgconfig name description libs requires)
       set(private "")
     endif()
   endif()
+  # OpenVDB has no file for pkg-config. Of a static library its users link what it is made with.
+  if(name STREQUAL "froude-openvdb" AND NOT BUILD_SHARED_LIBS)
+    string(APPEND libs " -lopenvdb -lImath")
+  endif()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/froude.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${froude_pkgconfig_dir})
 endfunction()
@@ -49,6 +60,10 @@ froude_pkgconfig(froude-particles "particle pools, cells, emitters, sinks" "-lfr
   "froude-fields = ${PROJECT_VERSION}")
 froude_pkgconfig(froude-solver "worlds of bullets and fluids among polygons" "-lfroude_solver"
   "froude-particles = ${PROJECT_VERSION}")
+if(FROUDE_OPENVDB)
+  froude_pkgconfig(froude-openvdb "the distance field against OpenVDB, and .vdb files" "-lfroude_openvdb"
+    "froude-fields = ${PROJECT_VERSION}")
+endif()
 froude_pkgconfig(froude "2D particle simulation among rigid polygons" "" "froude-solver = ${PROJECT_VERSION}")
 
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "cli/request.h"
+#include "export/vdb_frames.h"
 #include "run/exit_codes.h"
 #include "scene/document.h"
 
@@ -108,7 +109,7 @@ void addRun(CLI::App& app, Typed& typed) {
       ->allow_extra_args(false)
       ->type_name("PATH=VALUE");
   command.add_option("--accuracy", typed.accuracy, "not in this version")->type_name("P%");
-  command.add_option("--frames", typed.frames, "frames to write instead of the scene's: png,h5 or none")
+  command.add_option("--frames", typed.frames, "frames to write instead of the scene's: any of png,h5,vdb, or none")
       ->type_name("LIST");
   addSessionOptions(command, typed.run.session, typed);
   command.footer(std::string(kRunFooter));
@@ -192,14 +193,15 @@ std::optional<SimdTarget> targetNamed(const std::string& word) {
 // The list of --frames as a value of the scene's key.
 std::string framesValue(const std::string& text) {
   if (text == "none") return "[]";
-  const std::vector<std::string> known{"png", "h5", "none"};
+  const std::vector<std::string> known{"png", "h5", "vdb", "none"};
   std::vector<std::string> kinds;
   for (const std::string& kind : CLI::detail::split(text, ',')) {
-    if (kind == "vdb") throw UsageError("--frames vdb: not in this version; png and h5 are");
-    if (kind != "png" && kind != "h5") {
+    if (kind == "vdb" && !exporting::kHasOpenVdb)
+      throw UsageError("--frames vdb: this build has no OpenVDB; it has png and h5");
+    if (kind != "png" && kind != "h5" && kind != "vdb") {
       throw UsageError(
-          fmt::format("--frames {}: there is no kind of frames '{}'{}; name png, h5 or both as png,h5, or none", text,
-                      kind, scene::suggestion(kind, known)));
+          fmt::format("--frames {}: there is no kind of frames '{}'{}; name png, h5, vdb, several as png,h5, or none",
+                      text, kind, scene::suggestion(kind, known)));
     }
     kinds.push_back('"' + kind + '"');
   }

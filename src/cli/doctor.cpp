@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "export/vdb_frames.h"
 #include "run/exit_codes.h"
 #include "run/hdf5_archive.h"
 #include "run/machine.h"
@@ -52,10 +53,12 @@ ClockNoise clockNoise() {
 std::string numbers(int a, int b, int c) { return fmt::format("{}.{}.{}", a, b, c); }
 
 std::vector<std::pair<std::string, std::string>> dependencies() {
+  const std::string openVdb = exporting::openVdbVersion();
   return {
       {"oneTBB", run::tbbVersion()},
       {"Eigen", numbers(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"HDF5", run::hdf5Version()},
+      {"OpenVDB", openVdb.empty() ? "not in this build: no .vdb frames, no `froude field --check`" : openVdb},
       {"Cairo", cairo_version_string()},
       {"fmt", numbers(FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"toml++", numbers(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},

@@ -12,6 +12,7 @@
 #include "export/film.h"
 #include "export/png_painter.h"
 #include "export/segments.h"
+#include "export/vdb_frames.h"
 
 namespace froude::exporting {
 namespace {
@@ -51,9 +52,10 @@ void removeFile(const std::string& file) {
 
 struct FrameWriter::Impl {
   std::string folder;
-  bool png, h5;
+  bool png, h5, vdb;
   double every;  // [s]
   PngPainter painter;
+  std::optional<VdbFrames> grids;
   std::vector<FrameEntry> closed;
   std::optional<Segment> open;
   int nextSegment = 0;
@@ -63,10 +65,11 @@ struct FrameWriter::Impl {
       : folder(std::move(where)),
         png(scene.output.png),
         h5(scene.output.h5),
+        vdb(scene.output.vdb),
         every(scene.output.every),
         painter(scene) {}
 
-  std::string picture(int index) const { return folder + "/" + frameName(index) + ".png"; }
+  std::string fileOf(int index, const std::string& ending) const { return folder + "/" + frameName(index) + ending; }
 
   void makeSegmentFolder() const {
     std::error_code error;
@@ -74,10 +77,11 @@ struct FrameWriter::Impl {
     if (error) throw OutputError(folder + "/frames: cannot be made: " + error.message());
   }
 
-  /// Drops pictures and frames from `next` on, and segments left half-written by a crash.
+  /// Drops pictures, grids and frames from `next` on, and segments left half-written by a crash.
   void dropFrom(int next) {
-    for (const int k : numbersIn(folder, "frame_", ".png"))
-      if (k >= next) removeFile(picture(k));
+    for (const char* ending : {".png", ".vdb"})
+      for (const int k : numbersIn(folder, "frame_", ending))
+        if (k >= next) removeFile(fileOf(k, ending));
     const std::string part(".h5.part");
     for (const int k : numbersIn(folder + "/frames", "", part)) removeFile(folder + "/" + segmentFile(k) + ".part");
     for (const int k : numbersIn(folder + "/frames", "", ".h5")) {
@@ -105,8 +109,9 @@ struct FrameWriter::Impl {
   }
 };
 
-FrameWriter::FrameWriter(std::string folder, const scene::Scene& scene, const World&, int nextFrame)
+FrameWriter::FrameWriter(std::string folder, const scene::Scene& scene, const World& world, int nextFrame)
     : impl_(std::make_unique<Impl>(std::move(folder), scene)) {
+  if (impl_->vdb) impl_->grids.emplace(world);
   if (nextFrame > 0)
     impl_->dropFrom(nextFrame);
   else if (impl_->h5)
@@ -116,7 +121,8 @@ FrameWriter::FrameWriter(std::string folder, const scene::Scene& scene, const Wo
 FrameWriter::~FrameWriter() = default;
 
 void FrameWriter::write(const World& world, int index) {
-  if (impl_->png) impl_->painter.draw(impl_->picture(index), world);
+  if (impl_->png) impl_->painter.draw(impl_->fileOf(index, ".png"), world);
+  if (impl_->grids) impl_->grids->write(impl_->fileOf(index, ".vdb"), world, index);
   if (!impl_->h5) return;
   if (!impl_->open) impl_->open.emplace(impl_->nextSegment);
   impl_->open->add(world, index);

@@ -1,4 +1,4 @@
-// Frames of a run: HDF5 segments with XDMF, PNG pictures, and a film of them.
+// Frames of a run: HDF5 segments with XDMF, PNG pictures, .vdb files, and a film of the pictures.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@ class OutputError : public Error {
   using Error::Error;
 };
 
-/// Writes frames into a run's folder, of the kinds that the scene asks for: frame_00000.png …, and segments
-/// frames/0000.h5 … with frames.h5 and frames.xdmf over them. Frames are numbered from 0; nothing here alters the
-/// world. A segment is built in memory and written whole, so what is on disk is always sound; one that outgrows 256 MB
-/// is closed early.
+/// Writes frames into a run's folder, of the kinds that the scene asks for: frame_00000.png …, frame_00000.vdb …, and
+/// segments frames/0000.h5 … with frames.h5 and frames.xdmf over them. Frames are numbered from 0; nothing here alters
+/// the world. A segment is built in memory and written whole, so what is on disk is always sound; one that outgrows 256
+/// MB is closed early.
 class FrameWriter {
  public:
   /// `nextFrame` > 0 when a run is resumed: frames from that number on are dropped first. Throws OutputError.

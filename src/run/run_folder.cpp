@@ -44,7 +44,8 @@ bool isRunFile(std::string_view name) {
   if (name.ends_with(kPartSuffix)) name.remove_suffix(kPartSuffix.size());
   constexpr std::array<std::string_view, 7> kNames{"scene.toml", "summary.json", "checkpoint.h5", "gauges.csv",
                                                    "frames.h5",  "frames.xdmf",  "film.mp4"};
-  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || isNumbered(name, "frame_", ".png");
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || isNumbered(name, "frame_", ".png") ||
+         isNumbered(name, "frame_", ".vdb");
 }
 
 bool isSegment(std::string_view name) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "export/vdb_frames.h"
 #include "scene/draft.h"
 
 namespace froude::scene {
@@ -40,14 +41,14 @@ void readOutput(TableReader& root, Draft& draft) {
   if (draft.scene.duration / def.every > 1e6)
     output.fail("every",
                 fmt::format("asks for {:.3g} frames, right are at most 1e6", draft.scene.duration / def.every));
-  if (const Node* frames = output.find("frames"); frames != nullptr)
+  if (const Node* frames = output.find("frames"); frames != nullptr && !exporting::kHasOpenVdb)
     for (const Node& item : frames->items)
       if (item.kind == Node::Kind::Text && item.text == "vdb")
-        output.fail(item, "frames", "\"vdb\" is not in this version; this build has: h5, png");
-  const std::vector<std::string> frames = output.words("frames", {"h5", "png"}, {"h5", "png"});
+        output.fail(item, "frames", "\"vdb\" wants a build with OpenVDB; this build has: h5, png");
+  const std::vector<std::string> frames = output.words("frames", {"h5", "png", "vdb"}, {"h5", "png"});
   def.h5 = std::find(frames.begin(), frames.end(), "h5") != frames.end();
   def.png = std::find(frames.begin(), frames.end(), "png") != frames.end();
-  def.vdb = false;
+  def.vdb = std::find(frames.begin(), frames.end(), "vdb") != frames.end();
   def.checkpoint = output.number("checkpoint", Range::positive(), 60.0);
   def.image = readPng(output, draft.scene.world.domain.box);
   root.resolved().set("output", output.resolved());

@@ -99,6 +99,11 @@ class Consumer(unittest.TestCase):
         self.assertEqual(self.ask("particles;fields")[:2], (True, ["base", "fields", "particles"]))
         self.assertEqual(self.ask("base")[:2], (True, ["base"]))
 
+    @unittest.skipIf(cached(BUILD, "FROUDE_OPENVDB") == "OFF", "froude::openvdb is not built")
+    def test_openvdb_comes_only_when_it_is_asked_for(self):
+        self.assertEqual(self.ask("openvdb")[:2], (True, ["base", "fields", "openvdb"]))
+        self.assertRegex(self.build_and_run("grids"), r"OpenVDB \d+\.\d+\.\d+: 0\.0300 m from the edge")
+
     def test_another_minor_version_and_an_unknown_part_are_refused(self):
         self.assertFalse(self.ask(version="0.2")[0])
         self.assertFalse(self.ask(version="0.0.9")[0])

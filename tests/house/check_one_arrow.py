@@ -30,7 +30,7 @@ LIBRARIES = {
     "Highway": (r"hwy/", ["src/base/", "fields/", "particles/", "solver/"]),
     "program": (r"fmt/|nlohmann/|hdf5|H5|cairo|muParser|CLI/|toml\+\+/|svgpp/|libxml/|polyclipping/|clipper|png",
                 ["src/"]),
-    "OpenVDB": (r"openvdb/|nanovdb/", ["fields/openvdb/", "src/export/", "src/openvdb/"]),
+    "OpenVDB": (r"openvdb/|nanovdb/", ["fields/openvdb/"]),
     "POSIX": (r"(unistd|fcntl|sched|pthread|signal|dlfcn|poll|termios)\.h|sys/", ["src/run/"]),
 }
 STANDARD = re.compile(r"^(c?[a-z_0-9]+|experimental/[a-z_]+)$")
@@ -60,7 +60,7 @@ def included_path(floor, quoted, name):
 
 def library_complaints(path, floor, name):
     """What is wrong with including this library's header here."""
-    public = path.endswith(".h") and floor != "program" and not path.startswith("fields/openvdb/")
+    public = path.endswith(".h") and floor != "program"
     if path.endswith("-inl.h"):  # part of a source file that is compiled once for each SIMD target
         public = False
     if STANDARD.match(name) or name.startswith("Eigen/"):

@@ -55,7 +55,9 @@ class Checks(unittest.TestCase):
                 ("solver/world.cpp", "<tbb/parallel_for.h>", "belongs into src/base/"),
                 ("fields/polygon.cpp", "<fmt/core.h>", "belongs into src/"),
                 ("fields/polygon.cpp", "<unistd.h>", "belongs into src/run/"),
-                ("src/scene/scene.cpp", "<openvdb/openvdb.h>", "belongs into")):
+                ("src/scene/scene.cpp", "<openvdb/openvdb.h>", "belongs into"),
+                ("fields/openvdb/level_set.h", "<openvdb/openvdb.h>", "public header"),
+                ("fields/polygon.cpp", "<openvdb/openvdb.h>", "belongs into fields/openvdb/")):
             self.assert_complains("check_one_arrow.py", {path: f"#include {include}\n"}, about)
 
     def test_a_slow_library_has_one_door(self):

@@ -1,7 +1,5 @@
 // Frames in HDF5 and XDMF, read back.
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <regex>
@@ -13,6 +11,7 @@
 namespace froude::exporting {
 namespace {
 
+using test::FullDisk;
 using test::readDataset;
 using test::readNumber;
 using test::rootNames;
@@ -233,24 +232,6 @@ TEST(ExportXdmf, leaves_out_frames_without_particles) {
   EXPECT_EQ(folder.text("frames.xdmf").find("Polyvertex"), std::string::npos);
   EXPECT_EQ(readDataset(folder.file("frames.h5"), "frame_00000/position").shape, (std::vector<hsize_t>{0, 2}));
 }
-
-/// Writes to files fail beyond so many bytes while it lives: a disk that is full.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, SIG_IGN);
-    const rlimit less{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &less);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, SIG_DFL);
-  }
-
- private:
-  rlimit before_{};
-};
 
 TEST(ExportSegments, a_full_disk_is_an_error_that_names_the_file_and_leaves_nothing_half_written) {
   const scene::Scene scene = h5Scene();

@@ -272,7 +272,7 @@ TEST(SceneRefusal, output) {
   expectRefusals({
       {kHead + "[output]\nevery = 0\n", "6:9: output.every: is 0", ""},
       {kHead + "[output]\nevery = 1e-9\n", "6:9: output.every: asks for 1e+09 frames", ""},
-      {kHead + "[output]\nframes = [\"vdb\"]\n", "6:11: output.frames: \"vdb\" is not in this version", "h5, png"},
+      {kHead + "[output]\nframes = [\"vbd\"]\n", "6:11: output.frames: ", "\"vdb\""},
       {kHead + "[output]\nframes = \"png\"\n", "6:10: output.frames: is a string", "list"},
       {kHead + "[output]\ncheckpoint = 0\n", "6:14: output.checkpoint: is 0", ""},
       {kHead + "[output]\npng = { width = 3 }\n", "6:17: output.png.width: is 3", "from 16"},

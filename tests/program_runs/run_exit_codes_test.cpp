@@ -103,7 +103,7 @@ TEST_F(ExitCodes, wrong_command_lines_end_with_2_and_write_nothing) {
                                                {"run", "s.toml", "--forse"},
                                                {"run", "s.toml", "--threads", "0"},
                                                {"run", "s.toml", "--accuracy", "5%"},
-                                               {"run", "s.toml", "--frames", "vdb"},
+                                               {"run", "s.toml", "--frames", "vbd"},
                                                {"resume", "absent"},
                                                {"resume", "."}}) {
     const Outcome outcome = froude(words);

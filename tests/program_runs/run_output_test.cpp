@@ -124,6 +124,32 @@ TEST_F(Output, frames_are_written_as_asked) {
   EXPECT_EQ(files("none"), (Words{"checkpoint.h5", "gauges.csv", "scene.toml", "summary.json"}));
 }
 
+TEST_F(Output, vdb_frames_are_written_dropped_by_resume_and_replaced_by_force) {
+  const bool has =
+      nlohmann::json::parse(froude({"doctor", "--json"}).out)["dependencies"]["OpenVDB"].get<std::string>().find(
+          "not in this build") == std::string::npos;
+  write("s.toml", tinyScene());
+  const Outcome outcome = froude({"run", "s.toml", "-o", "o", "--frames", "vdb"});
+  if (!has) {
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("no OpenVDB"), std::string::npos) << outcome.err;
+    return;
+  }
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("grids: o/frame_*.vdb (6)"), std::string::npos) << outcome.out;
+  Words found = files("o");
+  EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const std::string& f) { return f.ends_with(".vdb"); }), 6);
+  const std::string hash = stateHash("o");
+  ASSERT_EQ(froude({"run", "s.toml", "-o", "o", "--force", "--frames", "vdb", "--until", "0.05"}).code, 0);
+  std::filesystem::copy(path("o/frame_00000.vdb"), path("o/frame_00009.vdb"));  // later than the checkpoint
+  ASSERT_EQ(froude({"resume", "o"}).code, 0);
+  found = files("o");
+  EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const std::string& f) { return f.ends_with(".vdb"); }), 6);
+  EXPECT_EQ(stateHash("o"), hash);
+  ASSERT_EQ(froude({"run", "s.toml", "-o", "o", "--force", "--frames", "none"}).code, 0);
+  EXPECT_EQ(files("o"), (Words{"checkpoint.h5", "gauges.csv", "scene.toml", "summary.json"}));
+}
+
 TEST_F(Output, folders_are_numbered_and_force_replaces) {
   write("s.toml", tinyScene());
   EXPECT_EQ(froude({"run", "s.toml"}).lastLine(), "out/s");
@@ -207,7 +233,7 @@ TEST_F(Output, doctor_tells_the_build_and_its_libraries) {
   }
   const auto json = nlohmann::json::parse(froude({"doctor", "--json"}).out, nullptr, false);
   ASSERT_TRUE(json.is_object());
-  for (const char* library : {"oneTBB", "Eigen", "HDF5", "Cairo", "fmt", "toml++", "muParser", "CLI11"}) {
+  for (const char* library : {"oneTBB", "Eigen", "HDF5", "OpenVDB", "Cairo", "fmt", "toml++", "muParser", "CLI11"}) {
     EXPECT_TRUE(json["dependencies"].contains(library)) << library;
   }
 }
