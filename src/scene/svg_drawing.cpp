@@ -1,0 +1,252 @@
+#include "scene/svg_drawing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <polyclipping/clipper.hpp>
+#include <sstream>
+
+namespace froude::scene {
+
+namespace {
+
+namespace clip = ClipperLib;
+
+constexpr std::size_t kMostVertices = 100'000;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
+constexpr double kDefaultTolerance = 1.0 / 2000.0;  // of the larger side: a circle gets 71 vertices
+
+std::string readFile(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw DrawingError(fmt::format("{}: is a folder, right is an SVG drawing", path));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    throw DrawingError(fmt::format("{}: {}", path,
+                                   std::filesystem::exists(path, error)
+                                       ? "cannot be read, right is a file with read permission"
+                                       : "there is no such file, right is the path of a drawing"));
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > kMostBytes)
+    throw DrawingError(fmt::format("{}: has {:.1f} MiB, right are at most {} MiB", path,
+                                   static_cast<double>(size) / (1 << 20), kMostBytes >> 20));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad()) throw DrawingError(fmt::format("{}: reading stopped half-way", path));
+  return text.str();
+}
+
+/// Powers of two apart, about the middle of a box; coordinates stay below 2³⁰, where Clipper's products fit 64 bits.
+class Lattice {
+ public:
+  explicit Lattice(const Box& box) {
+    unit_ = std::exp2(std::ceil(std::log2(box.size().maxCoeff())) - 30.0);
+    middle_ = (box.center() / unit_).array().round() * unit_;
+  }
+  double unit() const { return unit_; }
+
+  /// The nearest point of the lattice, and the first vertex that was put there.
+  clip::IntPoint snap(const Vec2& p) {
+    const Vec2 q = (p - middle_) / unit_;
+    const clip::IntPoint at(std::llround(q.x()), std::llround(q.y()));
+    vertices_.emplace(std::pair(at.X, at.Y), p);
+    return at;
+  }
+  Vec2 point(const clip::IntPoint& p) const {
+    return middle_ + unit_ * Vec2(static_cast<double>(p.X), static_cast<double>(p.Y));
+  }
+  /// The vertex of the drawing that was put there, if any.
+  const Vec2* vertex(const clip::IntPoint& p) const {
+    const auto found = vertices_.find({p.X, p.Y});
+    return found == vertices_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  double unit_;
+  Vec2 middle_;
+  std::map<std::pair<clip::cInt, clip::cInt>, Vec2> vertices_;
+};
+
+/// One outer ring with its holes, on the lattice.
+struct Piece {
+  clip::Path outer;
+  clip::Paths holes;
+};
+
+/// Rings that are nowhere wider than a few lattice spacings come from rounding, not from a pen.
+bool isSpeck(const clip::Path& path) {
+  double around = 0.0;
+  for (std::size_t i = 0, j = path.size() - 1; i < path.size(); j = i++)
+    around += std::hypot(static_cast<double>(path[i].X - path[j].X), static_cast<double>(path[i].Y - path[j].Y));
+  return std::abs(clip::Area(path)) <= 2.0 * around;
+}
+
+class Merger {
+ public:
+  Merger(const std::vector<DrawnElement>& elements, const std::string& name, double tolerance)
+      : elements_(elements), name_(name), tolerance_(tolerance) {}
+
+  Polygon polygon(std::vector<std::string>* notes);
+
+ private:
+  Box bounds() const;
+  clip::Paths rings(const DrawnElement& element, Lattice* lattice);
+  std::vector<Piece> unite(const std::vector<clip::Paths>& filled) const;
+  std::string namesIn(const Piece& piece, const std::vector<clip::Paths>& filled) const;
+  Polygon build(const Piece& piece, const Lattice& lattice, const std::string& names,
+                std::vector<std::string>* notes) const;
+
+  const std::vector<DrawnElement>& elements_;
+  std::string name_;
+  double tolerance_;
+  std::size_t vertices_ = 0;
+};
+
+Box Merger::bounds() const {
+  Box box;
+  for (const DrawnElement& element : elements_)
+    for (const std::vector<Curve>& subpath : element.subpaths)
+      for (const Curve& curve : subpath) box.include(curve.bounds());
+  return box;
+}
+
+clip::Paths Merger::rings(const DrawnElement& element, Lattice* lattice) {
+  clip::Paths all;
+  for (const std::vector<Curve>& subpath : element.subpaths) {
+    if (subpath.empty()) continue;
+    std::vector<Vec2> points{subpath.front().start()};
+    try {
+      for (const Curve& curve : subpath) {
+        flatten(curve, tolerance_, kMostVertices, &points);
+        if (vertices_ + points.size() > kMostVertices) throw TooManyPieces("");
+      }
+    } catch (const TooManyPieces&) {
+      throw DrawingError(fmt::format(
+          "{}: {}: the drawing has more than {} vertices at a tolerance of {:.3g} m, right is a larger one or a "
+          "simpler drawing",
+          element.place, element.name, kMostVertices, tolerance_));
+    }
+    vertices_ += points.size();
+    clip::Path ring;
+    for (const Vec2& p : points) {
+      const clip::IntPoint at = lattice->snap(p);
+      if (ring.empty() || ring.back() != at) ring.push_back(at);
+    }
+    all.push_back(std::move(ring));
+  }
+  return all;
+}
+
+std::vector<Piece> Merger::unite(const std::vector<clip::Paths>& filled) const {
+  clip::Clipper clipper(clip::ioStrictlySimple);
+  for (const clip::Paths& paths : filled) clipper.AddPaths(paths, clip::ptSubject, true);
+  clip::PolyTree tree;
+  clipper.Execute(clip::ctUnion, tree, clip::pftNonZero, clip::pftNonZero);
+  std::vector<Piece> pieces;
+  for (const clip::PolyNode* node = tree.GetFirst(); node != nullptr; node = node->GetNext()) {
+    if (node->IsHole() || isSpeck(node->Contour)) continue;
+    pieces.push_back({node->Contour, {}});
+    for (const clip::PolyNode* hole : node->Childs)
+      if (!isSpeck(hole->Contour)) pieces.back().holes.push_back(hole->Contour);
+  }
+  return pieces;
+}
+
+/// The elements with a vertex in the piece or on it.
+std::string Merger::namesIn(const Piece& piece, const std::vector<clip::Paths>& filled) const {
+  std::string names;
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    const bool within = std::any_of(filled[i].begin(), filled[i].end(), [&](const clip::Path& path) {
+      return clip::PointInPolygon(path.front(), piece.outer) != 0;
+    });
+    if (!within) continue;
+    names += fmt::format("{}{} ({})", names.empty() ? "" : " with ", elements_[i].name, elements_[i].place);
+    if (names.size() > 200) return names + " …";
+  }
+  return names;
+}
+
+Polygon Merger::build(const Piece& piece, const Lattice& lattice, const std::string& names,
+                      std::vector<std::string>* notes) const {
+  std::size_t crossings = 0;
+  const auto ring = [&](const clip::Path& path, bool exact) {
+    std::vector<Vec2> points;
+    for (const clip::IntPoint& p : path) {
+      const Vec2* vertex = lattice.vertex(p);
+      crossings += vertex == nullptr;
+      points.push_back(exact && vertex != nullptr ? *vertex : lattice.point(p));
+    }
+    return points;
+  };
+  // Vertices as drawn; if the half spacing that they move by makes outlines meet, as on the lattice.
+  for (const bool exact : {true, false}) {
+    crossings = 0;
+    std::vector<std::vector<Vec2>> holes;
+    for (const clip::Path& hole : piece.holes) holes.push_back(ring(hole, exact));
+    try {
+      Polygon polygon = Polygon::make(ring(piece.outer, exact), std::move(holes));
+      if (notes != nullptr && crossings > 0)
+        notes->push_back(fmt::format("{}: outlines cross; {} of these points lie on a lattice of {:.2g} m", name_,
+                                     crossings, lattice.unit()));
+      return polygon;
+    } catch (const PolygonError& error) {
+      if (!exact) throw DrawingError(fmt::format("{}: {}: {}", name_, names, error.what()));
+    }
+  }
+  throw DrawingError(name_);  // not reached: both ways return or throw
+}
+
+Polygon Merger::polygon(std::vector<std::string>* notes) {
+  const Box box = bounds();
+  const double size = box.empty() ? 0.0 : box.size().maxCoeff();
+  const std::string first = fmt::format("{}: {}", elements_.front().place, elements_.front().name);
+  if (!(size > 1e-12 * std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff())) || !(size > 1e-100))
+    throw DrawingError(fmt::format("{}: has no area, right is an outline that encloses some", first));
+  if (tolerance_ == 0.0) tolerance_ = kDefaultTolerance * size;
+  Lattice lattice(box);
+  std::vector<clip::Paths> filled;
+  for (const DrawnElement& element : elements_) {
+    const clip::PolyFillType rule = element.evenOdd ? clip::pftEvenOdd : clip::pftNonZero;
+    clip::Paths simple;
+    clip::Clipper clipper(clip::ioStrictlySimple);
+    clipper.AddPaths(rings(element, &lattice), clip::ptSubject, true);
+    clipper.Execute(clip::ctUnion, simple, rule, rule);
+    std::erase_if(simple, isSpeck);
+    if (simple.empty() && notes != nullptr && elements_.size() > 1)
+      notes->push_back(fmt::format("{}: {}: has no area and was left out", element.place, element.name));
+    filled.push_back(std::move(simple));
+  }
+  const std::vector<Piece> pieces = unite(filled);
+  if (pieces.empty())
+    throw DrawingError(fmt::format("{}: has no area{}, right is an outline that encloses some", first,
+                                   elements_.size() > 1 ? ", nor has any other element" : ""));
+  if (pieces.size() == 1) return build(pieces.front(), lattice, namesIn(pieces.front(), filled), notes);
+  std::string list;
+  for (std::size_t i = 0; i < pieces.size() && i < 5; ++i) list += "; " + namesIn(pieces[i], filled);
+  throw DrawingError(fmt::format("{}: {} separate outlines{}{}; a shape is one polygon, right is the id of one of them",
+                                 name_, pieces.size(), list, pieces.size() > 5 ? "; …" : ""));
+}
+
+}  // namespace
+
+Polygon svgPolygonOf(const std::string& text, const std::string& name, const std::string& id, double scale,
+                     double tolerance, std::vector<std::string>* notes) {
+  const std::vector<DrawnElement> elements = readDrawing(text, name, id, scale, notes);
+  try {
+    return Merger(elements, name, tolerance).polygon(notes);
+  } catch (const clip::clipperException& error) {
+    throw DrawingError(
+        fmt::format("{}: its outlines cannot be united ({}), right is a simpler drawing", name, error.what()));
+  }
+}
+
+Polygon svgPolygon(const std::string& path, const std::string& id, double scale, double tolerance,
+                   std::vector<std::string>* notes) {
+  return svgPolygonOf(readFile(path), path, id, scale, tolerance, notes);
+}
+
+}  // namespace froude::scene

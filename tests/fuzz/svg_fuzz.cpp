@@ -1,0 +1,27 @@
+// Fuzzes shapes from drawings: whatever the bytes, there is a sound polygon or a DrawingError in words, in bounded time.
+#include <cstdlib>
+
+#include "scene/svg_drawing.h"
+
+namespace {
+
+/// What every polygon promises.
+void expectSound(const froude::Polygon& polygon) {
+  if (!(polygon.area() > 0.0) || polygon.edgeCount() < 3 || !polygon.bounds().max.allFinite()) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  // The id "a" stands in many of the corpus' drawings.
+  for (const char* id : {"", "a"}) {
+    try {
+      std::vector<std::string> notes;
+      expectSound(froude::scene::svgPolygonOf(text, "fuzz.svg", id, 0.0, 0.0, &notes));
+    } catch (const froude::scene::DrawingError& error) {
+      if (std::string(error.what()).rfind("fuzz.svg:", 0) != 0) std::abort();
+    }
+  }
+  return 0;
+}
