@@ -96,8 +96,9 @@ class Merger {
   Box bounds() const;
   clip::Paths rings(const DrawnElement& element, Lattice* lattice);
   std::vector<Piece> unite(const std::vector<clip::Paths>& filled) const;
-  std::string namesIn(const Piece& piece, const std::vector<clip::Paths>& filled) const;
-  Polygon build(const Piece& piece, const Lattice& lattice, const std::string& names,
+  std::vector<std::size_t> elementsIn(const Piece& piece, const std::vector<clip::Paths>& filled) const;
+  std::string names(const std::vector<std::size_t>& elements) const;
+  Polygon build(const Piece& piece, const Lattice& lattice, const std::string& whose,
                 std::vector<std::string>* notes) const;
 
   const std::vector<DrawnElement>& elements_;
@@ -157,20 +158,27 @@ std::vector<Piece> Merger::unite(const std::vector<clip::Paths>& filled) const {
 }
 
 /// The elements with a vertex in the piece or on it.
-std::string Merger::namesIn(const Piece& piece, const std::vector<clip::Paths>& filled) const {
-  std::string names;
+std::vector<std::size_t> Merger::elementsIn(const Piece& piece, const std::vector<clip::Paths>& filled) const {
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; i < filled.size(); ++i) {
     const bool within = std::any_of(filled[i].begin(), filled[i].end(), [&](const clip::Path& path) {
       return clip::PointInPolygon(path.front(), piece.outer) != 0;
     });
-    if (!within) continue;
-    names += fmt::format("{}{} ({})", names.empty() ? "" : " with ", elements_[i].name, elements_[i].place);
-    if (names.size() > 200) return names + " …";
+    if (within) found.push_back(i);
   }
-  return names;
+  return found;
 }
 
-Polygon Merger::build(const Piece& piece, const Lattice& lattice, const std::string& names,
+std::string Merger::names(const std::vector<std::size_t>& elements) const {
+  std::string all;
+  for (const std::size_t i : elements) {
+    all += fmt::format("{}{} ({})", all.empty() ? "" : " with ", elements_[i].name, elements_[i].place);
+    if (all.size() > 200) return all + " …";
+  }
+  return all;
+}
+
+Polygon Merger::build(const Piece& piece, const Lattice& lattice, const std::string& whose,
                       std::vector<std::string>* notes) const {
   std::size_t crossings = 0;
   const auto ring = [&](const clip::Path& path, bool exact) {
@@ -194,7 +202,7 @@ Polygon Merger::build(const Piece& piece, const Lattice& lattice, const std::str
                                      crossings, lattice.unit()));
       return polygon;
     } catch (const PolygonError& error) {
-      if (!exact) throw DrawingError(fmt::format("{}: {}: {}", name_, names, error.what()));
+      if (!exact) throw DrawingError(fmt::format("{}: {}: {}", name_, whose, error.what()));
     }
   }
   throw DrawingError(name_);  // not reached: both ways return or throw
@@ -224,11 +232,14 @@ Polygon Merger::polygon(std::vector<std::string>* notes) {
   if (pieces.empty())
     throw DrawingError(fmt::format("{}: has no area{}, right is an outline that encloses some", first,
                                    elements_.size() > 1 ? ", nor has any other element" : ""));
-  if (pieces.size() == 1) return build(pieces.front(), lattice, namesIn(pieces.front(), filled), notes);
+  if (pieces.size() == 1) return build(pieces.front(), lattice, names(elementsIn(pieces.front(), filled)), notes);
+  std::vector<std::vector<std::size_t>> owners;
+  for (const Piece& piece : pieces) owners.push_back(elementsIn(piece, filled));
+  std::sort(owners.begin(), owners.end());
   std::string list;
-  for (std::size_t i = 0; i < pieces.size() && i < 5; ++i) list += "; " + namesIn(pieces[i], filled);
+  for (std::size_t i = 0; i < owners.size() && i < 5; ++i) list += "; " + names(owners[i]);
   throw DrawingError(fmt::format("{}: {} separate outlines{}{}; a shape is one polygon, right is the id of one of them",
-                                 name_, pieces.size(), list, pieces.size() > 5 ? "; …" : ""));
+                                 name_, owners.size(), list, owners.size() > 5 ? "; …" : ""));
 }
 
 }  // namespace

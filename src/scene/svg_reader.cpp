@@ -111,7 +111,26 @@ struct FreeDocument {
 };
 using Document = std::unique_ptr<xmlDoc, FreeDocument>;
 
+/// libxml2 writes some complaints (broken encodings) to stderr whatever it is asked; not while this lives, on this
+/// thread.
+class SilentXml {
+ public:
+  SilentXml() : function_(xmlGenericError), context_(xmlGenericErrorContext) {
+    xmlSetGenericErrorFunc(nullptr, silence);
+  }
+  ~SilentXml() { xmlSetGenericErrorFunc(context_, function_); }
+  SilentXml(const SilentXml&) = delete;
+  SilentXml& operator=(const SilentXml&) = delete;
+
+ private:
+  static void silence(void*, const char*, ...) {}
+
+  xmlGenericErrorFunc function_;
+  void* context_;
+};
+
 Document parseXml(const std::string& text, const std::string& name) {
+  const SilentXml silent;
   const std::unique_ptr<xmlParserCtxt, decltype(&xmlFreeParserCtxt)> context(xmlNewParserCtxt(), xmlFreeParserCtxt);
   // No network, no external entities, no entity replaced; libxml2's own bounds on depth and size stay on.
   constexpr int kOptions = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING | XML_PARSE_BIG_LINES;
@@ -363,7 +382,7 @@ void DrawingReader::path(Element node, Pen* pen) const {
   if (!good)
     fail(node, fmt::format("{} stops being path data behind the segment that ends at ({}, {}), "
                            "right are M L H V C S Q T A Z with their numbers",
-                           excerpt("d=" + d), pen->last().x(), pen->last().y()));
+                           "d=" + excerpt(d), pen->last().x(), pen->last().y()));
 }
 
 void DrawingReader::polyline(Element node, Pen* pen) const {
@@ -371,7 +390,7 @@ void DrawingReader::polyline(Element node, Pen* pen) const {
   std::vector<Vec2> points;
   if (!text.empty() && !parsePoints(text, &points))
     fail(node, fmt::format("{} stops being a list of points behind {} of them, right are pairs of numbers, x,y x,y …",
-                           excerpt("points=" + text), points.size()));
+                           "points=" + excerpt(text), points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i == 0) pen->move(points[i].x(), points[i].y());
     if (i > 0) pen->line(points[i].x(), points[i].y());

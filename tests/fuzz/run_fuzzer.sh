@@ -3,6 +3,7 @@
 # LONGEST is that of an input, in bytes. Ten seconds; with _long and FROUDE_LONG=1 ten minutes. Exit code 77: no clang here.
 set -euo pipefail
 fuzzer=$1 corpus=$2 longest=$3 seconds=10
+name=$(basename "$corpus")
 if [ "${4:-}" = _long ] && [ "${FROUDE_LONG:-}" = 1 ]; then seconds=600; fi
 if [ -z "${FROUDE_FUZZ_COMPILER:-}" ] || [[ $FROUDE_FUZZ_COMPILER == *-NOTFOUND ]]; then
   echo 'skipped: there is no clang++, which fuzzers need (Debian: clang, libclang-rt-14-dev)'
@@ -12,5 +13,5 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cp -r "$corpus" "$work/corpus"
 # What ends a run is kept beside the fuzzer, to be run again alone: FUZZER FILE.
-"$fuzzer" -seed=1 -max_total_time="$seconds" -max_len="$longest" -rss_limit_mb=1024 -timeout=20 -print_final_stats=1 \
+"$fuzzer" -seed=1 -dict="${0%/*}/$name.dict" -max_total_time="$seconds" -max_len="$longest" -rss_limit_mb=1024 -timeout=20 -print_final_stats=1 \
   -artifact_prefix="$fuzzer." "$work/corpus"

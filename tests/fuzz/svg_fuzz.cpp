@@ -1,4 +1,5 @@
-// Fuzzes shapes from drawings: whatever the bytes, there is a sound polygon or a DrawingError in words, in bounded time.
+// Fuzzes shapes from drawings: whatever the bytes, there is a sound polygon or a DrawingError in words, in bounded
+// time.
 #include <cstdlib>
 
 #include "scene/svg_drawing.h"
