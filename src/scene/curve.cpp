@@ -143,9 +143,9 @@ void flatten(const Curve& curve, double tolerance, std::size_t limit, std::vecto
     return;
   }
   std::vector<double> ends;
-  if (curve.isCircular() && curve.radius() > tolerance) {
+  if (curve.isCircular()) {
     // A chord over the angle θ is r (1 − cos θ/2) from its arc.
-    const double half = std::asin(std::sqrt(0.5 * tolerance / curve.radius()));
+    const double half = std::asin(std::sqrt(std::min(1.0, 0.5 * tolerance / curve.radius())));
     const double angle = std::abs(curve.end() - curve.begin());
     const double count = std::max(std::ceil(angle / (4.0 * half)), angle > kPi ? 3.0 : 1.0);
     if (!(count <= static_cast<double>(limit))) throw TooManyPieces("a circle needs too many pieces");

@@ -17,6 +17,7 @@ namespace {
 namespace clip = ClipperLib;
 
 constexpr std::size_t kMostVertices = 100'000;
+constexpr std::size_t kMostCrossings = 1'000'000;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{16} << 20;
 constexpr double kDefaultTolerance = 1.0 / 2000.0;  // of the larger side: a circle gets 71 vertices
 
@@ -83,6 +84,34 @@ bool isSpeck(const clip::Path& path) {
   for (std::size_t i = 0, j = path.size() - 1; i < path.size(); j = i++)
     around += std::hypot(static_cast<double>(path[i].X - path[j].X), static_cast<double>(path[i].Y - path[j].Y));
   return std::abs(clip::Area(path)) <= 2.0 * around;
+}
+
+struct Edge {
+  clip::IntPoint a, b;  // a.X <= b.X
+};
+
+int side(const Edge& e, const clip::IntPoint& p) {
+  const clip::cInt turn = (e.b.X - e.a.X) * (p.Y - e.a.Y) - (e.b.Y - e.a.Y) * (p.X - e.a.X);
+  return (turn > 0) - (turn < 0);
+}
+
+/// True if edges cross more than `limit` times: uniting takes memory and time for each crossing. Cost: n log n, and
+/// each pair of edges whose x ranges overlap.
+bool crossMoreOften(const std::vector<clip::Paths>& rings, std::size_t limit) {
+  std::vector<Edge> edges, open;
+  for (const clip::Paths& paths : rings)
+    for (const clip::Path& path : paths)
+      for (std::size_t i = 0, j = path.size() - 1; i < path.size(); j = i++)
+        edges.push_back(path[j].X <= path[i].X ? Edge{path[j], path[i]} : Edge{path[i], path[j]});
+  std::sort(edges.begin(), edges.end(), [](const Edge& e, const Edge& f) { return e.a.X < f.a.X; });
+  std::size_t crossings = 0;
+  for (const Edge& e : edges) {
+    std::erase_if(open, [&](const Edge& f) { return f.b.X < e.a.X; });
+    for (const Edge& f : open) crossings += side(e, f.a) * side(e, f.b) < 0 && side(f, e.a) * side(f, e.b) < 0;
+    if (crossings > limit) return true;
+    open.push_back(e);
+  }
+  return false;
 }
 
 class Merger {
@@ -216,12 +245,19 @@ Polygon Merger::polygon(std::vector<std::string>* notes) {
     throw DrawingError(fmt::format("{}: has no area, right is an outline that encloses some", first));
   if (tolerance_ == 0.0) tolerance_ = kDefaultTolerance * size;
   Lattice lattice(box);
-  std::vector<clip::Paths> filled;
-  for (const DrawnElement& element : elements_) {
+  std::vector<clip::Paths> drawn, filled;
+  for (const DrawnElement& element : elements_) drawn.push_back(rings(element, &lattice));
+  if (crossMoreOften(drawn, kMostCrossings))
+    throw DrawingError(
+        fmt::format("{}: outlines cross more than {} times, right is a simpler drawing, or the id of a "
+                    "part of it",
+                    first, kMostCrossings));
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    const DrawnElement& element = elements_[i];
     const clip::PolyFillType rule = element.evenOdd ? clip::pftEvenOdd : clip::pftNonZero;
     clip::Paths simple;
     clip::Clipper clipper(clip::ioStrictlySimple);
-    clipper.AddPaths(rings(element, &lattice), clip::ptSubject, true);
+    clipper.AddPaths(drawn[i], clip::ptSubject, true);
     clipper.Execute(clip::ctUnion, simple, rule, rule);
     std::erase_if(simple, isSpeck);
     if (simple.empty() && notes != nullptr && elements_.size() > 1)
@@ -230,8 +266,9 @@ Polygon Merger::polygon(std::vector<std::string>* notes) {
   }
   const std::vector<Piece> pieces = unite(filled);
   if (pieces.empty())
-    throw DrawingError(fmt::format("{}: has no area{}, right is an outline that encloses some", first,
-                                   elements_.size() > 1 ? ", nor has any other element" : ""));
+    throw DrawingError(
+        fmt::format("{}: has no area at a tolerance of {:.3g} m{}, right is an outline that encloses some", first,
+                    tolerance_, elements_.size() > 1 ? ", nor has any other element" : ""));
   if (pieces.size() == 1) return build(pieces.front(), lattice, names(elementsIn(pieces.front(), filled)), notes);
   std::vector<std::vector<std::size_t>> owners;
   for (const Piece& piece : pieces) owners.push_back(elementsIn(piece, filled));

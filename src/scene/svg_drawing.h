@@ -25,7 +25,8 @@ class DrawingError : public Error {
 /// from the curve. Outlines are filled by their fill rule and united on a lattice whose spacing is at most 2⁻²⁹ of the
 /// larger side; vertices of the drawing keep their coordinates, points where outlines cross lie on the lattice.
 /// What was left out is said in `notes`. Throws DrawingError; nothing but the file itself is read.
-/// Cost: reading, and n log n in the number of vertices, at most 100,000, plus the number of their edges' crossings.
+/// Cost: reading, and n log n in the number of vertices, at most 100,000, plus the number of their edges' crossings, at
+/// most 1,000,000.
 Polygon svgPolygon(const std::string& path, const std::string& id, double scale, double tolerance,
                    std::vector<std::string>* notes);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "scene/document.h"
 #include "scene/svg_drawing.h"
@@ -106,6 +107,13 @@ std::string excerpt(const std::string& text) {
   return '"' + shown + (shown.size() < text.size() ? "…\"" : "\"");
 }
 
+std::string listed(const std::vector<long>& lines) {
+  constexpr std::size_t kMost = 8;
+  const std::span<const long> first(lines.data(), std::min(lines.size(), kMost));
+  return fmt::format("line {}{}", fmt::join(first, ", "),
+                     lines.size() > kMost ? fmt::format(" and {} more", lines.size() - kMost) : "");
+}
+
 struct FreeDocument {
   void operator()(xmlDoc* document) const { xmlFreeDoc(document); }
 };
@@ -168,7 +176,7 @@ class DrawingReader {
   void read(const std::string& id, double scale);
   std::vector<DrawnElement> take() {
     for (const auto& [what, lines] : leftOut_)
-      if (notes_ != nullptr) notes_->push_back(fmt::format("{}: {} (line {})", name_, what, fmt::join(lines, ", ")));
+      if (notes_ != nullptr) notes_->push_back(fmt::format("{}: {} ({})", name_, what, listed(lines)));
     return std::move(elements_);
   }
 
@@ -501,6 +509,7 @@ void DrawingReader::read(const std::string& id, double scale) {
     Affine place = drawing;
     Style style = rootStyle;
     for (auto node = outside.rbegin(); node != outside.rend(); ++node) {
+      if (tag(*node) == "svg") fail(*node, "a <svg> within a drawing is not read, right is a group, <g>");
       style = styleOf(*node, style);
       place = transformOf(*node, place);
     }
@@ -509,7 +518,7 @@ void DrawingReader::read(const std::string& id, double scale) {
   }
   if (elements_.empty()) {
     std::string reasons;
-    for (const auto& [what, lines] : leftOut_) reasons += fmt::format("; {} (line {})", what, fmt::join(lines, ", "));
+    for (const auto& [what, lines] : leftOut_) reasons += fmt::format("; {} ({})", what, listed(lines));
     const std::string of = id.empty() ? "" : " in " + excerpt(id);
     throw DrawingError(fmt::format("{}{}: nothing is drawn{} that encloses area{}; right is a filled outline", name_,
                                    part != nullptr ? fmt::format(":{}", xmlGetLineNo(part)) : "", of, reasons));

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include <froude/base/random.h>
+
 #include "program/scene_support.h"
 #include "scene/svg_drawing.h"
 
@@ -228,6 +230,7 @@ TEST(SvgDrawing, what_is_wrong_is_said_with_the_element_and_its_line) {
       {"<rect width=\"1\" height=\"1\" transform=\"turn(3)\"/>", "a.svg:2: <rect>: ", "transform is \"turn(3)\""},
       {"<rect width=\"1\" height=\"1\" fill-rule=\"evenod\"/>", "a.svg:2: <rect>: ", "right is \"nonzero\" or"},
       {"<rect width=\"1e12\" height=\"1\"/>", "a.svg:2: <rect>: ", "beyond 1e9 m"},
+      {"<svg>\n<rect id=\"in\" width=\"1\" height=\"1\"/></svg>", "a.svg:2: <svg>: ", "right is a group"},
       {"<svg><rect width=\"1\" height=\"1\"/></svg>", "a.svg:2: <svg>: ", "right is a group"},
       {"<text>words</text>", "a.svg: ", "nothing is drawn that encloses area; <text> has no outline"},
       {"<rect id=\"a\" width=\"1\" height=\"1\"/><circle cx=\"5\" r=\"1\"/>", "a.svg: ",
@@ -285,6 +288,25 @@ TEST(SvgDrawing, entities_are_never_expanded_and_nothing_else_is_opened) {
   EXPECT_NE(what("").find("this is not XML"), std::string::npos);
 }
 
+TEST(SvgDrawing, a_tolerance_beyond_the_size_leaves_a_triangle_of_a_circle_and_nothing_of_a_slim_arch) {
+  EXPECT_EQ(drawn("<circle r=\"1\"/>", 5.0).edgeCount(), 3u);
+  try {
+    drawn(path("M0 0 Q5 1 10 0 Z"), 5.0);
+    ADD_FAILURE();
+  } catch (const DrawingError& error) {
+    EXPECT_NE(std::string(error.what()).find("has no area at a tolerance of 5 m"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SvgDrawing, many_things_left_out_are_counted_not_listed) {
+  std::vector<std::string> notes;
+  std::string body = "<rect width=\"1\" height=\"1\"/>";
+  for (int i = 0; i < 20; ++i) body += "\n<text/>";
+  drawn(body, 0.0, "", &notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("(line 3, 4, 5, 6, 7, 8, 9, 10 and 12 more)"), std::string::npos) << notes[0];
+}
+
 TEST(SvgDrawing, more_vertices_than_a_hundred_thousand_are_refused_with_advice) {
   try {
     drawn("<circle id=\"c\" r=\"1\"/>", 1e-12);
@@ -293,6 +315,15 @@ TEST(SvgDrawing, more_vertices_than_a_hundred_thousand_are_refused_with_advice) 
     EXPECT_EQ(std::string(error.what()).find("a.svg:2: circle \"c\": the drawing has more than 100000 vertices"), 0u)
         << error.what();
   }
+}
+
+TEST(SvgDrawing, a_tangle_of_a_million_crossings_is_refused_at_once) {
+  RandomStream random(3, 0);
+  std::string tangle = "M";
+  for (int i = 0; i < 20000; ++i)
+    tangle += std::to_string(random.uniform()) + " " + std::to_string(random.uniform()) + " ";
+  EXPECT_NE(refused(path(tangle + "Z", "id=\"knot\"")).find("path \"knot\": outlines cross more than 1000000 times"),
+            std::string::npos);
 }
 
 std::string sceneWith(const std::string& shape) {
