@@ -210,31 +210,35 @@ std::string Merger::names(const std::vector<std::size_t>& elements) const {
 Polygon Merger::build(const Piece& piece, const Lattice& lattice, const std::string& whose,
                       std::vector<std::string>* notes) const {
   std::size_t crossings = 0;
-  const auto ring = [&](const clip::Path& path, bool exact) {
-    std::vector<Vec2> points;
+  const auto points = [&](const clip::Path& path, bool asDrawn) {
+    std::vector<Vec2> ring;
     for (const clip::IntPoint& p : path) {
       const Vec2* vertex = lattice.vertex(p);
       crossings += vertex == nullptr;
-      points.push_back(exact && vertex != nullptr ? *vertex : lattice.point(p));
+      ring.push_back(asDrawn && vertex != nullptr ? *vertex : lattice.point(p));
     }
-    return points;
+    return ring;
   };
-  // Vertices as drawn; if the half spacing that they move by makes outlines meet, as on the lattice.
-  for (const bool exact : {true, false}) {
+  const auto make = [&](bool asDrawn) {
     crossings = 0;
     std::vector<std::vector<Vec2>> holes;
-    for (const clip::Path& hole : piece.holes) holes.push_back(ring(hole, exact));
-    try {
-      Polygon polygon = Polygon::make(ring(piece.outer, exact), std::move(holes));
-      if (notes != nullptr && crossings > 0)
-        notes->push_back(fmt::format("{}: outlines cross; {} of these points lie on a lattice of {:.2g} m", name_,
-                                     crossings, lattice.unit()));
-      return polygon;
-    } catch (const PolygonError& error) {
-      if (!exact) throw DrawingError(fmt::format("{}: {}: {}", name_, whose, error.what()));
-    }
+    for (const clip::Path& hole : piece.holes) holes.push_back(points(hole, asDrawn));
+    Polygon polygon = Polygon::make(points(piece.outer, asDrawn), std::move(holes));
+    if (notes != nullptr && crossings > 0)
+      notes->push_back(fmt::format("{}: outlines cross; {} of these points lie on a lattice of {:.2g} m", name_,
+                                   crossings, lattice.unit()));
+    return polygon;
+  };
+  try {
+    return make(true);
+  } catch (const PolygonError&) {
+    // Half a spacing was enough to make outlines meet. On the lattice, where they were united, they may not.
   }
-  throw DrawingError(name_);  // not reached: both ways return or throw
+  try {
+    return make(false);
+  } catch (const PolygonError& error) {
+    throw DrawingError(fmt::format("{}: {}: {}", name_, whose, error.what()));
+  }
 }
 
 Polygon Merger::polygon(std::vector<std::string>* notes) {
