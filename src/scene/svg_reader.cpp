@@ -467,7 +467,9 @@ void DrawingReader::draw(Element node, const Affine& place, const Style& style) 
 
 /// Metres a user unit, if the drawing states its size in units of length; else 1.
 double DrawingReader::trueScale() const {
-  constexpr double kPixel = 0.0254 / 96.0;  // m
+  constexpr double kInch = 0.0254, kPixel = kInch / 96.0;  // m
+  static const std::pair<const char*, double> kUnits[] = {
+      {"mm", 1e-3}, {"cm", 1e-2}, {"in", kInch}, {"pt", kInch / 72.0}, {"pc", kInch / 6.0}};
   std::vector<double> box;
   std::string viewBox = attribute(root_, "viewBox").value_or("");
   std::replace(viewBox.begin(), viewBox.end(), ',', ' ');
@@ -482,12 +484,12 @@ double DrawingReader::trueScale() const {
   double scale = kInfinity;
   for (const auto& [key, side] : {std::pair("width", std::size_t{2}), std::pair("height", std::size_t{3})}) {
     const std::string text = trimmed(attribute(root_, key).value_or(""));
-    bool stated = false;
-    for (const char* unit : {"mm", "cm", "in", "pt", "pc"}) stated = stated || text.ends_with(unit);
-    if (!stated) continue;
-    const double metres = length(root_, key, text) * kPixel;
-    if (!(metres > 0.0)) fail(root_, fmt::format("{} is {}, right is a length above 0", key, excerpt(text)));
-    scale = std::min(scale, box.empty() ? kPixel : metres / box[side]);
+    for (const auto& [unit, metresOf] : kUnits) {
+      if (!text.ends_with(unit)) continue;
+      const double metres = length(root_, key, text.substr(0, text.size() - 2)) * metresOf;
+      if (!(metres > 0.0)) fail(root_, fmt::format("{} is {}, right is a length above 0", key, excerpt(text)));
+      scale = std::min(scale, box.empty() ? kPixel : metres / box[side]);
+    }
   }
   return std::isfinite(scale) ? scale : 1.0;
 }

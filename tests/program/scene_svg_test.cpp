@@ -203,6 +203,9 @@ TEST(SvgDrawing, the_true_size_of_a_drawing_that_states_one_is_the_default) {
         .area();
   };
   EXPECT_NEAR(area("width=\"200mm\" height=\"100mm\" viewBox=\"0 0 400 200\""), 0.005 * 0.005, 1e-12);
+  EXPECT_EQ(area("width=\"210mm\" height=\"297mm\" viewBox=\"0 0 210 297\""), 0.01 * 0.01) << "1 mm a unit, exactly";
+  EXPECT_NEAR(area("width=\"72pt\" viewBox=\"0 0 10 10\""), 0.0254 * 0.0254, 1e-12);
+  EXPECT_NEAR(area("height=\"6pc\" viewBox=\"0 0 10 10\""), 0.0254 * 0.0254, 1e-12);
   EXPECT_NEAR(area("width=\"1in\" height=\"1in\""), std::pow(10 * 0.0254 / 96, 2), 1e-15);
   EXPECT_NEAR(area("width=\"20cm\" viewBox=\"0,0,100,50\""), 0.02 * 0.02, 1e-12);
   EXPECT_EQ(area("width=\"200\" height=\"100\" viewBox=\"0 0 400 200\""), 100.0);
