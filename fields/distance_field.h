@@ -19,8 +19,8 @@ class FROUDE_API DistanceField {
   /// 0 and finite. Cost: O(cells near the boundary).
   DistanceField(const Polygon& polygon, double band, double cellSize = 0.0);
 
-  /// Exact for |distance| ≤ band, else a bound. Exactly on the boundary the distance is 0 and the normal still a unit
-  /// vector.
+  /// Exact for |distance| ≤ band, else a bound. Exactly on the boundary the distance is 0 (at points that are within
+  /// rounding of a second edge: 0 to rounding) and the normal still a unit vector.
   FieldSample sample(const Vec2& local) const { return grid_.sample(local); }
   /// Exact everywhere. Cost far from the boundary: a search over rings of cells.
   FieldSample sampleExact(const Vec2& local) const { return grid_.sampleExact(local); }

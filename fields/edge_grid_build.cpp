@@ -58,6 +58,7 @@ class EdgeGridBuilder {
 
   /// False if the codes of the cells have no room for so many lists; the cells must be larger then.
   bool build() {
+    buildCoarse();  // signs within rounding are decided with its lists
     g_.codes_.assign(g_.cellCount() + 1, 0);
     g_.clearance_.assign(g_.cellCount() + 1, std::numeric_limits<float>::infinity());
     std::vector<Piece> pieces = piecesOf(squareOver(g_.nx_, g_.ny_),
@@ -69,7 +70,6 @@ class EdgeGridBuilder {
     parallelFor(pieces.size(), 1, [&](std::size_t k, std::size_t) { fill(pieces[k]); });
     if (!join(pieces)) return false;
     spreadClearance();
-    buildCoarse();
     return true;
   }
 

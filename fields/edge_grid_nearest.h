@@ -62,10 +62,16 @@ struct EdgeGrid::Nearest {
     inside = outside = kInfinity;
   }
 
-  /// Sign within rounding of a single feature.
+  /// Sign within rounding of an edge: exactly that edge's, unless another one is as near as rounding can tell (a
+  /// corner, a slit, a sliver).
   bool onTheSpot(std::uint32_t index, std::uint32_t source) const {
     const GridEdge& e = grid.edges_[index];
-    if (e.direction.dot(p - e.a) < 0.0) return grid.contains(source, p);
+    if (e.direction.dot(p - e.a) < 0.0 || !grid.inGrid(p)) return grid.contains(source, p);
+    const double reach = 4.0 * grid.rounding_ * grid.rounding_;
+    for (const std::uint32_t i : grid.within(p)) {
+      const bool other = i != index && i >= grid.sourceStarts_[source] && i < grid.sourceStarts_[source + 1];
+      if (other && squaredDistance(grid.edges_[i], p) <= reach) return grid.contains(source, p);
+    }
     return orientation(e.a, e.b, p) >= 0;
   }
 };

@@ -37,8 +37,8 @@ class FROUDE_API PolygonError : public Error {
 class FROUDE_API Polygon {
  public:
   /// Checks and repairs. Repaired, with a line in `notes` for each: wrong winding, a repeated closing or neighbouring
-  /// vertex, a vertex in the middle of a straight run. All decisions are exact. Coordinates [m]. Throws PolygonError.
-  /// Cost: near O(n log n).
+  /// vertex, a vertex in the middle of a straight run. All decisions are exact, for coordinates whose differences are 0
+  /// or from 1e-140 to 1e140. Coordinates [m]. Throws PolygonError. Cost: near O(n log n).
   static Polygon make(std::vector<Vec2> outer, std::vector<std::vector<Vec2>> holes = {},
                       std::vector<std::string>* notes = nullptr);
   /// The rectangle of `box`. Throws PolygonError for an empty or flat one.

@@ -38,8 +38,8 @@ struct Draft {
   }
 };
 
-/// A shape under the key `key` of `parent`: polygon with holes, box or regular. Written down as a polygon. Repairs
-/// become notes.
+/// A shape under the key `key` of `parent`: polygon with holes, box, regular or a drawing. Written down as a polygon.
+/// Repairs become notes.
 std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft);
 /// The polygon, or an equal one that was there before.
 std::shared_ptr<const Polygon> sharedShape(Polygon polygon, Draft& draft);

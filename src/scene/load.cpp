@@ -14,10 +14,6 @@ namespace froude::scene {
 
 namespace {
 
-std::string located(const Place& place, const std::string& key, const std::string& text) {
-  return fmt::format("{}:{}:{}: {}: {}", place.file, place.line, place.column, key, text);
-}
-
 std::string readFile(const std::string& file) {
   const std::filesystem::path path(file);
   std::error_code error;
@@ -76,11 +72,6 @@ void checkEmitters(const TableReader& root, const Draft& draft) {
 }
 
 }  // namespace
-
-SceneError::SceneError(const Place& place, const std::string& key, const std::string& problem)
-    : Error(located(place, key, problem)), place_(place), key_(key) {}
-
-std::string Warning::line() const { return located(place, key, "warning: " + text); }
 
 std::size_t Scene::fluidParticles() const {
   std::size_t count = 0;

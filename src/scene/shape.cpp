@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "scene/draft.h"
+#include "scene/svg_drawing.h"
 
 namespace froude::scene {
 
@@ -40,6 +43,18 @@ Polygon readPolygon(TableReader& shape, std::vector<std::string>& notes) {
     for (const Node& ring : node->items) holes.push_back(readRing(shape, "holes", ring));
   }
   return Polygon::make(std::move(outer), std::move(holes), &notes);
+}
+
+/// A drawing's path is relative to the scene's folder.
+Polygon readDrawn(TableReader& shape, std::vector<std::string>& notes) {
+  TableReader svg = *shape.table("svg", {"file", "id", "scale", "tolerance"});
+  const std::string file = svg.text("file");
+  if (file.empty()) svg.fail("file", "is empty, right is the path of an SVG drawing, relative to the scene's folder");
+  const std::string id = svg.text("id", "");
+  const double scale = svg.number("scale", Range::positive(), 0.0);
+  const double tolerance = svg.number("tolerance", Range::positive(), 0.0);
+  const std::filesystem::path path = std::filesystem::path(shape.file()).parent_path() / file;
+  return svgPolygon(path.string(), id, scale, tolerance, &notes);
 }
 
 /// The one of `keys` that the shape has.
@@ -89,7 +104,6 @@ std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string&
   parent.need(key, "for example { box = [0, 0, 1, 1] }");
   TableReader shape = *parent.table(key, {"polygon", "holes", "box", "regular", "svg"});
   const std::string kind = kindOf(shape, kKinds);
-  if (kind == "svg") shape.fail("svg", "SVG drawings are not in this version; this build has: polygon, box, regular");
   if (shape.has("holes") && kind != "polygon") shape.fail("holes", "holes belong to a polygon, not to a " + kind);
   std::vector<std::string> notes;
   std::shared_ptr<const Polygon> polygon;
@@ -98,13 +112,17 @@ std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string&
       polygon = sharedShape(readPolygon(shape, notes), draft);
     } else if (kind == "box") {
       polygon = sharedShape(Polygon::box(shape.box("box")), draft);
+    } else if (kind == "svg") {
+      polygon = sharedShape(readDrawn(shape, notes), draft);
     } else {
       TableReader regular = *shape.table("regular", {"sides", "radius"});
       const auto sides = static_cast<int>(regular.integer("sides", 3, 100000));
       polygon = sharedShape(Polygon::regular(sides, regular.number("radius", Range::positive())), draft);
     }
   } catch (const PolygonError& error) {
-    shape.fail(kind, std::string(error.what()));
+    shape.fail(kind, error.what());
+  } catch (const DrawingError& error) {
+    shape.fail(kind, error.what());
   }
   for (const std::string& note : notes) draft.scene.notes.push_back(shape.path() + ": " + note);
   parent.resolved().set(key, shapeNode(*polygon));

@@ -10,6 +10,7 @@ from tree import read, report
 BUILD_NAMES = {
     "TBB": "oneTBB", "Eigen3": "Eigen", "hwy": "Highway", "nlohmann_json": "JSON for Modern C++", "tomlplusplus": "toml++",
     "muparser": "muParser", "cairo": "Cairo", "GTest": "GoogleTest", "benchmark": "Google Benchmark",
+    "LibXml2": "libxml2", "polyclipping": "Clipper",
 }
 NOT_LIBRARIES = {"PkgConfig", "Git", "Threads", "Python3"}
 

@@ -56,13 +56,26 @@ std::string completed(const std::string& fragment) {
   return text;
 }
 
+/// What is said against a scene that stands where the drawings of the shipped scenes are.
+std::string judged(const std::string& text) {
+  const froude::testing::SceneFile file(text);
+  std::filesystem::copy(std::string(FROUDE_SOURCE_DIR) + "/scenes/drawings",
+                        std::filesystem::path(file.path()).parent_path() / "drawings");
+  try {
+    scene::load(file.path());
+  } catch (const scene::SceneError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
 TEST(Docs, every_scene_in_them_loads) {
   int scenes = 0;
   for (const Block& block : allBlocks()) {
     if (block.kind != "toml") continue;
     SCOPED_TRACE(block.file + ":" + std::to_string(block.line));
     ++scenes;
-    EXPECT_EQ(froude::testing::refusal(block.text), "accepted");
+    EXPECT_EQ(judged(block.text), "accepted");
   }
   EXPECT_GE(scenes, 2);
 }
@@ -73,7 +86,7 @@ TEST(Docs, every_fragment_of_a_scene_in_them_loads) {
     if (block.kind != "toml fragment") continue;
     SCOPED_TRACE(block.file + ":" + std::to_string(block.line));
     ++fragments;
-    EXPECT_EQ(froude::testing::refusal(completed(block.text)), "accepted");
+    EXPECT_EQ(judged(completed(block.text)), "accepted");
   }
   EXPECT_GE(fragments, 10);
 }

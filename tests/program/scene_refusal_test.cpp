@@ -124,7 +124,7 @@ TEST(SceneRefusal, blocks_of_fluid) {
       {block + "shape = { bx = [0, 0, 1, 1] }\n", "8:11: fluid.block.0.shape.bx: unknown key", "\"box\""},
       {block + "shape = { box = [0, 0, 1, 1], regular = { sides = 3, radius = 1 } }\n",
        "8:41: fluid.block.0.shape.regular: a second kind of shape", ""},
-      {block + "shape = { svg = { file = \"a.svg\" } }\n", "8:17: fluid.block.0.shape.svg: ", "not in this version"},
+      {block + "shape = { svg = { file = \"a.svg\" } }\n", "8:17: fluid.block.0.shape.svg: ", "there is no such file"},
       {block + "shape = { box = [0, 0, 1, 1], holes = [] }\n",
        "8:39: fluid.block.0.shape.holes: holes belong to a polygon", ""},
       {block + "shape = { regular = { sides = 2, radius = 1 } }\n", "8:31: fluid.block.0.shape.regular.sides: is 2",

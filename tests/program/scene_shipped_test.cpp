@@ -86,6 +86,21 @@ TEST(ShippedScenes, the_speed_scenes_are_those_that_other_programs_were_measured
     }
 }
 
+TEST(ShippedScenes, the_harbour_stands_as_it_was_drawn) {
+  const scene::Scene s = shipped("harbour");
+  ASSERT_EQ(s.world.bodies.size(), 6u);
+  const Polygon& land = *s.world.bodies[0].shape;
+  EXPECT_EQ(land.ringStarts().size(), 3u) << "the lock chamber is a hole";
+  EXPECT_EQ(land.bounds().min, Vec2(0.0, 0.0));
+  EXPECT_EQ(land.bounds().max.x(), 4.0);
+  EXPECT_FALSE(land.contains({2.0, 0.2})) << "within the chamber";
+  // The buoy is a ring of radii 16 and 8, one centimetre a unit, 0.1 mm of tolerance.
+  const Polygon& buoy = *s.world.bodies[1].shape;
+  EXPECT_NEAR(buoy.area(), kPi * (0.16 * 0.16 - 0.08 * 0.08), 2e-4 * 2 * kPi * 0.24);
+  EXPECT_NEAR(buoy.centroid().norm(), 0.0, 1e-6);
+  EXPECT_EQ(s.world.bodies[2].shape, s.world.bodies[5].shape) << "gulls share a shape";
+}
+
 TEST(ShippedScenes, ten_and_forty_thousand_particles_are_one_key_away) {
   const std::string file = std::string(FROUDE_SOURCE_DIR) + "/scenes/dam_speed.toml";
   EXPECT_EQ(scene::load(file, {{"model.spacing", "0.01"}}).fluidParticles(), 10000u);
