@@ -9,6 +9,7 @@
 
 #include "cli/doctor.h"
 #include "cli/explain.h"
+#include "cli/field.h"
 #include "cli/request.h"
 #include "export/frames.h"
 #include "run/exit_codes.h"
@@ -26,6 +27,7 @@ struct Dispatch {
   int operator()(const ResumeOptions& r) const { return resumeRun(r); }
   int operator()(const CheckRequest& r) const { return scene::checkCommand(r.scenes, r.strict, r.json); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
+  int operator()(const FieldRequest& r) const { return fieldCommand(r); }
   int operator()(const DoctorRequest& r) const { return doctorCommand(r.json); }
 };
 
