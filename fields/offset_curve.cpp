@@ -110,6 +110,8 @@ class Builder {
   void keep(const Candidate& c, double low, double high) {
     const double least = c.feature == FeatureKind::Edge ? rounding_ : rounding_ / c.radius;
     if (!(high - low > least)) return;
+    // Across the tip of a spike the far side is as near as the own one to rounding: look on which side this is.
+    if (offset_ != 0.0 && polygon_.contains(c.point(0.5 * (low + high))) != (offset_ < 0.0)) return;
     OffsetPiece piece;
     piece.feature = c.feature;
     piece.edge = c.edge;

@@ -52,7 +52,7 @@ constexpr std::string_view kExplainFooter = R"(Example:
 Runs the first moments of the scene to measure what a step costs; writes nothing.
 Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanation cannot be written.)";
 
-constexpr std::string_view kFieldFooter = R"(Examples:
+constexpr std::string_view kFieldFooter = R"(Example:
   froude field scenes/shapes/gear.toml -o gear.png --offset 0.05 --offset -0.05
   froude field scenes/mill.toml#wheel --at points.csv
 

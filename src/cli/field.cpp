@@ -33,10 +33,12 @@ std::string answers(const Polygon& polygon, const std::vector<Vec2>& points) {
 
 int answerPoints(const FieldRequest& request, const Polygon& polygon) {
   const std::string text = answers(polygon, scene::readPoints(request.points, kFarthest));
-  if (request.output.empty())
+  if (request.output.empty()) {
     std::fwrite(text.data(), 1, text.size(), stdout);
-  else
+  } else {
     run::writeWholeFile(request.output, text);
+    fmt::print("{}\n", request.output);
+  }
   return run::kDone;
 }
 
