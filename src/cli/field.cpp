@@ -8,6 +8,7 @@
 
 #include "run/atomic_file.h"
 #include "run/exit_codes.h"
+#include "run/signals.h"
 #include "scene/point_table.h"
 
 namespace froude::cli {
@@ -55,6 +56,7 @@ int drawPicture(const FieldRequest& request, const scene::ShapeArgument& shape) 
 
 int fieldCommand(const FieldRequest& request) {
   if (request.check) return checkField();
+  run::letWritesFail();
   const scene::ShapeArgument shape = scene::readShapeArgument(request.shape, request.svg);
   for (const std::string& note : shape.notes) fmt::print(stderr, "{}: note: {}\n", request.shape, note);
   return request.points.empty() ? drawPicture(request, shape) : answerPoints(request, shape.polygon);
