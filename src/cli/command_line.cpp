@@ -193,7 +193,7 @@ void addField(CLI::App& app, Typed& typed) {
   command.add_option("--cell", field.picture.cell, "size of a cell; default: by size and number of edges")
       ->check(metres(true))
       ->type_name("METRES");
-  command.add_option("--scale", field.svg.scale, "metres for each user unit of a drawing; default: 1")
+  command.add_option("--scale", field.svg.scale, "metres for each user unit of a drawing; default: as it states")
       ->check(metres(true))
       ->type_name("METRES");
   command.add_option("--tolerance", field.svg.tolerance, "between a drawing's curves and their chords")

@@ -10,7 +10,7 @@ namespace froude::scene {
 
 /// How a drawing becomes metres.
 struct SvgOptions {
-  double scale = 1.0;      // [m per user unit]
+  double scale = 0.0;      // [m per user unit]; 0: the size that the drawing states, else 1
   double tolerance = 0.0;  // between a curve and its chords [m]; 0: by the drawing's size
 };
 
