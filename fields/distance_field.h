@@ -9,6 +9,14 @@
 
 namespace froude {
 
+/// What one cell knows.
+struct FieldCell {
+  enum class Kind : std::uint8_t { Outside, Inside, Near };
+  Kind kind = Kind::Outside;  ///< Near: the cell keeps edges
+  std::uint32_t edges = 0;    ///< how many; 0 unless Near
+  float clearance = 0.0F;     ///< no point of the cell is nearer to the boundary; negative inside [m]
+};
+
 /// A grid over the polygon's box grown by the band; a cell near the boundary keeps the edges that are closest to at
 /// least one of its points, any other cell a conservative distance. All points are in the polygon's own frame [m].
 /// Immutable; queries allocate nothing and may run on any number of threads.
@@ -35,8 +43,22 @@ class FROUDE_API DistanceField {
   double band() const { return band_; }
   double cellSize() const { return grid_.cellSize(); }
   std::size_t memoryBytes() const { return sizeof *this + grid_.memoryBytes(); }
-  /// The cells, for drawing and for swept queries.
+  /// The cells, for swept queries.
   const detail::EdgeGrid& grid() const { return grid_; }
+
+  /// Cell in column i < nx() and row j < ny(), counted from `gridOrigin`.
+  FieldCell cell(int i, int j) const {
+    const std::size_t at =
+        static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx()) + static_cast<std::size_t>(i);
+    const auto edges = static_cast<std::uint32_t>(grid_.nearest(at).size());
+    const float clearance = grid_.clearance()[at];
+    if (edges > 0) return {FieldCell::Kind::Near, edges, clearance};
+    return {clearance < 0.0F ? FieldCell::Kind::Inside : FieldCell::Kind::Outside, 0, clearance};
+  }
+  int nx() const { return grid_.nx(); }
+  int ny() const { return grid_.ny(); }
+  /// Lower left corner of cell (0, 0) [m].
+  const Vec2& gridOrigin() const { return grid_.origin(); }
 
  private:
   Polygon polygon_;

@@ -7,16 +7,19 @@ namespace froude {
 void EventLog::clear() {
   contacts_.clear();
   sinks_.clear();
+  leaks_.clear();
 }
 
 void EventLog::beginAttempt() {
   attemptContacts_ = contacts_.size();
   attemptSinks_ = sinks_.size();
+  attemptLeaks_ = leaks_.size();
 }
 
 void EventLog::dropAttempt() {
   contacts_.resize(attemptContacts_);
   sinks_.resize(attemptSinks_);
+  leaks_.resize(attemptLeaks_);
 }
 
 ContactRecorder* EventLog::listenTo(Species species, const ParticlePool& pool, const BodySet& bodies, double time,
@@ -35,6 +38,10 @@ void EventLog::add(const ParticleContact& c) {
   const BodyId body = c.body >= 0 ? bodies_->id(static_cast<std::size_t>(c.body)) : BodyId{};
   contacts_.push_back(
       {species_, pool_->handleAt(c.particle), body, c.point, c.normal, c.approach, time_ + c.time * dt_});
+}
+
+void EventLog::add(const ParticleLeak& leak) {
+  leaks_.push_back({species_, pool_->handleAt(leak.particle), {}, leak.from, leak.to, leak.to, 0.0, time_ + dt_});
 }
 
 void EventLog::finishSpecies() {

@@ -10,7 +10,7 @@
 
 namespace froude {
 
-class EventLog final : public ContactRecorder {
+class EventLog final : public ContactRecorder, public LeakRecorder {
  public:
   EventSettings settings;
 
@@ -22,7 +22,10 @@ class EventLog final : public ContactRecorder {
 
   /// The pool whose contacts come next; null if they are not wanted. [time, time + dt] is the sub-step [s].
   ContactRecorder* listenTo(Species species, const ParticlePool& pool, const BodySet& bodies, double time, double dt);
+  /// Null if leaks are not wanted. They are of the pool that was named last.
+  LeakRecorder* leakRecorder() { return settings.leaks ? this : nullptr; }
   void add(const ParticleContact& contact) override;
+  void add(const ParticleLeak& leak) override;
   /// The species is through: brings its contacts of this sub-step into order, by particle's slot and then as they came.
   void finishSpecies();
 
@@ -30,11 +33,15 @@ class EventLog final : public ContactRecorder {
 
   std::span<const ContactEvent> contacts() const { return contacts_; }
   std::span<const SinkEvent> sinks() const { return sinks_; }
+  std::span<const LeakEvent> leaks() const { return leaks_; }
+  /// Those of the present attempt; body, boundary and depth are for the world to fill in.
+  std::span<LeakEvent> freshLeaks() { return std::span(leaks_).subspan(attemptLeaks_); }
 
  private:
   std::vector<ContactEvent> contacts_;
   std::vector<SinkEvent> sinks_;
-  std::size_t attemptContacts_ = 0, attemptSinks_ = 0, speciesBegin_ = 0;
+  std::vector<LeakEvent> leaks_;
+  std::size_t attemptContacts_ = 0, attemptSinks_ = 0, attemptLeaks_ = 0, speciesBegin_ = 0;
   Species species_ = Species::Fluid;
   const ParticlePool* pool_ = nullptr;
   const BodySet* bodies_ = nullptr;

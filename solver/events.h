@@ -13,6 +13,7 @@ struct EventSettings {
   bool sinks = false;
   double slowestContact =
       0.0;  // slower approaches are not recorded [m/s]: what lies on a floor touches it all the time
+  bool leaks = false;
 };
 
 /// A particle met a body or a closed side of the domain. Of a fluid particle and one obstacle only the first contact of
@@ -25,6 +26,19 @@ struct ContactEvent {
   Vec2 normal{0, 0};        // outward from the body, unit
   double speed = 0.0;       // of approach along the normal, relative to the body's surface, before the contact [m/s]
   double time = 0.0;        // [s]
+};
+
+/// A particle leaked in an accepted sub-step: its centre was found inside a solid at the end, though it was not
+/// squeezed. It has been taken out and counted; the handle is stale.
+struct LeakEvent {
+  Species species = Species::Fluid;
+  ParticleHandle particle;
+  BodyId body;          // that it is in, the nearest boundary's of several; null: a wall of the domain
+  Vec2 from{0, 0};      // where it was at the start of the sub-step [m]
+  Vec2 position{0, 0};  // where it was found [m]
+  Vec2 boundary{0, 0};  // the point of the boundary that is nearest to that [m]
+  double depth = 0.0;   // below that boundary [m]
+  double time = 0.0;    // of the sub-step's end [s]
 };
 
 /// A sink swallowed a particle. The handle is stale.

@@ -25,6 +25,8 @@ class Gravity {
   VectorField field_;
 };
 
+class LeakRecorder;
+
 /// Constant during a sub-step; handed to every stage.
 struct StepContext {
   double time = 0.0;  // at the start [s]
@@ -34,6 +36,8 @@ struct StepContext {
   SimdTarget simd;
   /// Of the fluid's pool, in scenes with fluid nozzles: until when a nozzle carries a particle at its own velocity [s].
   std::optional<ColumnId<double>> carriedUntil = std::nullopt;
+  /// Null where nobody listens.
+  LeakRecorder* leaks = nullptr;
 };
 
 /// A particle met an obstacle.
@@ -51,6 +55,19 @@ class ContactRecorder {
  public:
   virtual ~ContactRecorder() = default;
   virtual void add(const ParticleContact& contact) = 0;
+};
+
+/// A particle was found inside an obstacle at the end of a sub-step.
+struct ParticleLeak {
+  std::uint32_t particle;  // its index now
+  Vec2 from, to;           // at start and end [m]
+};
+
+/// Who wants to hear of leaks. Called as ContactRecorder is.
+class LeakRecorder {
+ public:
+  virtual ~LeakRecorder() = default;
+  virtual void add(const ParticleLeak& leak) = 0;
 };
 
 /// What particles gave to the bodies during a sub-step; index 0 is the domain, body i stands at i + 1.

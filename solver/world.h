@@ -152,6 +152,8 @@ class FROUDE_API World {
   /// threads. Good until the next step.
   std::span<const ContactEvent> contacts() const;
   std::span<const SinkEvent> swallowed() const;
+  /// As many as the ledger's leaks have grown by.
+  std::span<const LeakEvent> leaks() const;
 
   /// Everything on which the future depends; see base/archive.h.
   void archive(Archive& a);

@@ -46,6 +46,7 @@ struct World::Impl {
   StepBound chooseStep(double maxDt) const;
   void quarantine();
   void advance(double dt, StepStats& stats);
+  void explainLeaks(double dt);
   void judge(StepStats& stats, double dt);
   void retire();
   void tellSinks(const ParticlePool& pool);

@@ -3,6 +3,24 @@
 #include <froude/solver/world_impl.h>
 
 namespace froude {
+namespace {
+
+// Cost: the polygon's edges.
+Vec2 nearestOnBoundary(const Polygon& polygon, const Vec2& p) {
+  Vec2 nearest(kInfinity, kInfinity);
+  double least = kInfinity;
+  for (std::uint32_t e = 0; e < polygon.edgeCount(); ++e) {
+    const Vec2& a = polygon.edgeStart(e);
+    const Vec2 along = polygon.edgeEnd(e) - a;
+    const Vec2 on = a + std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+    if ((on - p).squaredNorm() >= least) continue;
+    least = (on - p).squaredNorm();
+    nearest = on;
+  }
+  return nearest;
+}
+
+}  // namespace
 
 RayHit World::castRay(const Vec2& from, const Vec2& to, const CollisionFilter& filter) const {
   const Obstacles::RayHit hit = impl_->solids().ray(from, to, filter);
@@ -67,7 +85,34 @@ bool World::insideSolid(const Vec2& point, const CollisionFilter& filter) const 
   return impl_->solids().distance(point, filter).distance < 0.0;
 }
 
+// What a leaked particle is in, by exact location in every body: the fields know neither depth nor owner deep inside.
+void World::Impl::explainLeaks(double dt) {
+  for (LeakEvent& leak : events.freshLeaks()) {
+    leak.depth = kInfinity;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const Polygon& shape = *bodies.definition(i).shape;
+      const BodyMotion& m = bodies.motion(i);
+      const Transform pose = Transform::of(m.position + dt * m.velocity, m.angle + dt * m.spin);
+      visitImages(def.domain, [&](const Vec2& shift) {
+        const Vec2 local = pose.toLocal(leak.position + shift);
+        if (!shape.contains(local)) return false;
+        const Vec2 boundary = nearestOnBoundary(shape, local);
+        if ((boundary - local).norm() >= leak.depth) return false;
+        leak.depth = (boundary - local).norm();
+        leak.boundary = pose.toWorld(boundary) - shift;
+        leak.body = bodies.id(i);
+        return false;
+      });
+    }
+    if (!leak.body.isNull()) continue;
+    const Box& box = def.domain.box;
+    leak.boundary = leak.position.cwiseMax(box.min).cwiseMin(box.max);
+    leak.depth = (leak.position - leak.boundary).norm();
+  }
+}
+
 std::span<const ContactEvent> World::contacts() const { return impl_->events.contacts(); }
 std::span<const SinkEvent> World::swallowed() const { return impl_->events.sinks(); }
+std::span<const LeakEvent> World::leaks() const { return impl_->events.leaks(); }
 
 }  // namespace froude

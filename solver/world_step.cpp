@@ -136,7 +136,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
                        (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * accelerationScale();
   obstacles->beginStep(bodies, dt, 2.0 * reach);
   impulses.reset(bodies.size());
-  const StepContext context{time, dt, gravity, *obstacles, def.simd, fluidCarried};
+  const StepContext context{time, dt, gravity, *obstacles, def.simd, fluidCarried, events.leakRecorder()};
   pushByForce(dt, stats);
   if (fluidModel != nullptr) {
     impulses.setRecorder(events.listenTo(Species::Fluid, *fluid, bodies, time, dt));
@@ -148,6 +148,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
     ballistic->advance(context, *bullets, impulses, stats);
     events.finishSpecies();
   }
+  explainLeaks(dt);
   finishForce(dt, stats);
   publishBodies(dt);
   bodies.finishStep(dt);

@@ -365,7 +365,8 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
   contacts_.begin(pool.size());
   crushed_.assign(blockCount(pool.size()), 0);
-  leaks_.assign(blockCount(pool.size()), 0);
+  if (leaks_.size() < crushed_.size()) leaks_.resize(crushed_.size());
+  for (std::vector<ParticleLeak>& block : leaks_) block.clear();
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       predictedX_[i] += dx_ * static_cast<double>(shiftX_[i]);
@@ -384,8 +385,12 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
       }
       if (context.obstacles.distance(to, point.filter).distance < 0.0) {
         // Only what is squeezed can be here: it has no free place.
-        ++(path.crushed ? crushed_ : leaks_)[begin / kBlockSize];
-        pool.kill(static_cast<std::uint32_t>(i));
+        const auto particle = static_cast<std::uint32_t>(i);
+        if (path.crushed)
+          ++crushed_[begin / kBlockSize];
+        else
+          leaks_[begin / kBlockSize].push_back({particle, at, to});
+        pool.kill(particle);
       }
       predictedX_[i] = to.x();
       predictedY_[i] = to.y();
@@ -401,7 +406,11 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   stats.wallHits += contacts_.size();
   if (!context.gravity.isConstant()) addFieldGravity(context, pool, stats);
   for (const std::uint32_t n : crushed_) stats.crushed += n;
-  for (const std::uint32_t n : leaks_) stats.leaks += n;
+  for (const std::vector<ParticleLeak>& block : leaks_) {
+    stats.leaks += block.size();
+    if (context.leaks == nullptr) continue;
+    for (const ParticleLeak& leak : block) context.leaks->add(leak);
+  }
   contacts_.book(particleMass(), impulses);
   // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did
   // there.

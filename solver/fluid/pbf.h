@@ -80,7 +80,8 @@ class Pbf final : public FluidModel {
   };
   std::vector<Carried> carried_;  // by a nozzle
   ContactLog contacts_;
-  std::vector<std::uint32_t> crushed_, leaks_;  // counts, one a block
+  std::vector<std::uint32_t> crushed_;            // counts, one a block
+  std::vector<std::vector<ParticleLeak>> leaks_;  // lists, one a block; empty but for what went wrong
 };
 
 }  // namespace froude

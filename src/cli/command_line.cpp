@@ -18,8 +18,10 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 5> kCommands{"run", "check", "explain", "resume", "doctor"};
+constexpr std::array<std::string_view, 6> kCommands{"run", "check", "explain", "field", "resume", "doctor"};
 constexpr int kMostThreads = 1024;
+constexpr double kMostMetres = 1e9;
+constexpr int kNarrowest = 320, kWidest = 8192;  // picture [pixels]
 
 constexpr std::string_view kRunFooter = R"(Example:
   froude run scenes/dam_break.toml -o out/dam --set model.spacing=0.02 --frames png
@@ -51,6 +53,18 @@ constexpr std::string_view kExplainFooter = R"(Example:
 Runs the first moments of the scene to measure what a step costs; writes nothing.
 Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanation cannot be written.)";
 
+constexpr std::string_view kFieldFooter = R"(Example:
+  froude field scenes/shapes/gear.toml -o gear.png --offset 0.05 --offset -0.05
+  froude field scenes/mill.toml#wheel --at points.csv
+  froude field scenes/drawings/harbour.svg#buoy --check
+
+SHAPE is FILE.toml with one line shape = { ... } as in a scene, SCENE.toml#BODY in the body's own frame, FILE.csv with
+x,y of a vertex in each row, or FILE.svg#ID, an element or a group of a drawing (without #ID all of it).
+--at reads x,y from each row and prints x,y,distance,normal_x,normal_y,closest_x,closest_y; the distance [m] is negative
+inside and exact everywhere.
+Exit codes: 0 done; 1 internal error; 2 the command line, the shape or a row of points is wrong, nothing was written;
+4 the picture or the table cannot be written.)";
+
 constexpr std::string_view kDoctorFooter = R"(Example:
   froude doctor --json
 
@@ -74,15 +88,27 @@ CLI::Validator seconds() {
           ""};
 }
 
+CLI::Validator metres(bool positive) {
+  return {[=](std::string& text) -> std::string {
+            double value = 0.0;
+            const bool number = CLI::detail::lexical_cast(text, value) && std::abs(value) <= kMostMetres;
+            if (number && (!positive || value > 0.0)) return {};
+            return fmt::format("'{}' is not a {} in metres{}", text, positive ? "length" : "distance",
+                               positive ? ", above 0" : "");
+          },
+          ""};
+}
+
 // Options as they are typed; what needs more than a look is judged after parsing.
 struct Typed {
   run::RunOptions run;
   run::ResumeOptions resume;
   CheckRequest check;
   ExplainRequest explain;
+  FieldRequest field;
   DoctorRequest doctor;
   std::vector<std::string> sets;
-  std::string accuracy, frames, simd;
+  std::string accuracy, frames, simd, layers;
   double until = 0.0;
 };
 
@@ -94,7 +120,8 @@ void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& t
       ->check(seconds())
       ->type_name("SECONDS");
   command.add_option("--simd", typed.simd, "instruction set: scalar, sse4, avx2 or avx3")->type_name("TARGET");
-  command.add_flag("--trace-leaks", session.traceLeaks, "tell every sub-step in which a particle crossed a wall");
+  command.add_flag("--trace-leaks", session.traceLeaks,
+                   "list every particle that leaked: when, where, into what; also in leaks.csv");
   command.add_flag("--quiet", session.quiet, "errors only; the folder is still the last line on stdout");
   command.add_flag("--verbose", session.verbose, "a line for every 100th sub-step: its length and what bound it");
 }
@@ -138,6 +165,43 @@ void addReaders(CLI::App& app, Typed& typed) {
   CLI::App& doctor = *app.add_subcommand("doctor", "say what this build and this machine are");
   doctor.add_flag("--json", typed.doctor.json, "as JSON");
   doctor.footer(std::string(kDoctorFooter));
+}
+
+void addField(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("field", "draw the distance field of a shape, or ask it at points");
+  FieldRequest& field = typed.field;
+  command.add_option("SHAPE", field.shape, "a shape: FILE.toml, SCENE.toml#BODY, FILE.csv or FILE.svg#ID")
+      ->type_name("")
+      ->required();
+  command.add_option("-o", field.output, "the picture to draw, .png or .svg; with --at a .csv instead of stdout")
+      ->type_name("FILE");
+  command.add_option("--at", field.points, "answer at these points: a .csv with x,y in each row, or - for stdin")
+      ->type_name("POINTS.csv");
+  command.add_flag("--check", field.check, "compare with OpenVDB's level set of the shape, at several voxel sizes");
+  command
+      .add_option("--offset", field.picture.offsets,
+                  "draw the curve at this distance, negative inside; may be repeated")
+      ->allow_extra_args(false)
+      ->check(metres(false))
+      ->type_name("METRES");
+  command.add_option("--show", typed.layers, "panels to draw: distance,cells,vectors,features; default: all")
+      ->type_name("LIST");
+  command.add_option("--width", field.picture.width, "of the picture; default: 1280")
+      ->check(wholeNumber(kNarrowest, kWidest))
+      ->type_name("PIXELS");
+  command.add_option("--band", field.picture.band, "how far the cells reach; default: 15 % of the shape's size")
+      ->check(metres(true))
+      ->type_name("METRES");
+  command.add_option("--cell", field.picture.cell, "size of a cell; default: by size and number of edges")
+      ->check(metres(true))
+      ->type_name("METRES");
+  command.add_option("--scale", field.svg.scale, "metres for each user unit of a drawing; default: as it states")
+      ->check(metres(true))
+      ->type_name("METRES");
+  command.add_option("--tolerance", field.svg.tolerance, "between a drawing's curves and their chords")
+      ->check(metres(true))
+      ->type_name("METRES");
+  command.footer(std::string(kFieldFooter));
 }
 
 std::vector<std::string> commandNames() { return {kCommands.begin(), kCommands.end()}; }
@@ -233,6 +297,43 @@ run::RunOptions finishRun(Typed& typed, const CLI::App& command, const std::vect
   return std::move(typed.run);
 }
 
+std::vector<exporting::FieldLayer> layersOf(const std::string& text) {
+  static const std::vector<std::string> kNames{"distance", "cells", "vectors", "features"};
+  std::vector<exporting::FieldLayer> layers;
+  for (const std::string& word : CLI::detail::split(text, ',')) {
+    const auto found = std::find(kNames.begin(), kNames.end(), word);
+    if (found == kNames.end())
+      throw UsageError(fmt::format("--show {}: there is no panel '{}'{}; name some of {}", text, word,
+                                   scene::suggestion(word, kNames), fmt::join(kNames, ",")));
+    const auto layer = static_cast<exporting::FieldLayer>(found - kNames.begin());
+    if (std::find(layers.begin(), layers.end(), layer) != layers.end())
+      throw UsageError(fmt::format("--show {}: '{}' stands there twice", text, word));
+    layers.push_back(layer);
+  }
+  return layers;
+}
+
+FieldRequest finishField(Typed& typed, const CLI::App& command) {
+  FieldRequest& field = typed.field;
+  const bool points = command.count("--at") > 0, picture = !points && !field.output.empty();
+  if (points && field.points.empty()) throw UsageError("--at: the name of the table is empty");
+  if (field.check && (points || command.count("-o") > 0)) throw UsageError("--check stands alone, without -o and --at");
+  if (!field.check && !points && !picture)
+    throw UsageError("nothing is asked of the field; right is -o FILE.png, -o FILE.svg, --at POINTS.csv or --check");
+  if (picture && !exporting::isPicture(field.output))
+    throw UsageError(fmt::format("-o {}: a picture is wanted, FILE.png or FILE.svg", field.output));
+  if (points && !field.output.empty() && !field.output.ends_with(".csv"))
+    throw UsageError(fmt::format("-o {}: with --at a table is written, FILE.csv", field.output));
+  for (const char* option : {"--offset", "--show", "--width", "--band", "--cell"})
+    if (!picture && command.count(option) > 0)
+      throw UsageError(fmt::format("{} is for pictures, with -o FILE.png or FILE.svg", option));
+  for (const char* option : {"--scale", "--tolerance"})
+    if (command.count(option) > 0 && !scene::isDrawing(field.shape))
+      throw UsageError(fmt::format("{} is for drawings, FILE.svg#ID; '{}' has its own metres", option, field.shape));
+  if (command.count("--show") > 0) field.picture.layers = layersOf(typed.layers);
+  return std::move(field);
+}
+
 Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
   const std::string& name = command.get_name();
   if (name == "run") return finishRun(typed, command, arguments);
@@ -242,6 +343,7 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   }
   if (name == "check") return typed.check;
   if (name == "explain") return typed.explain;
+  if (name == "field") return finishField(typed, command);
   return typed.doctor;
 }
 
@@ -278,6 +380,7 @@ Request parseCommandLine(const std::vector<std::string>& arguments) {
   app.allow_extras();
   addRun(app, typed);
   addReaders(app, typed);
+  addField(app, typed);
   addResume(app, typed);
   app.footer(
       "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"

@@ -9,10 +9,12 @@
 
 #include "cli/doctor.h"
 #include "cli/explain.h"
+#include "cli/field.h"
 #include "cli/request.h"
 #include "export/frames.h"
 #include "run/exit_codes.h"
 #include "run/progress.h"
+#include "scene/svg_drawing.h"
 
 namespace froude::cli {
 namespace {
@@ -26,6 +28,7 @@ struct Dispatch {
   int operator()(const ResumeOptions& r) const { return resumeRun(r); }
   int operator()(const CheckRequest& r) const { return scene::checkCommand(r.scenes, r.strict, r.json); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
+  int operator()(const FieldRequest& r) const { return fieldCommand(r); }
   int operator()(const DoctorRequest& r) const { return doctorCommand(r.json); }
 };
 
@@ -39,6 +42,9 @@ int dispatch(int argc, const char* const* argv) {
     return std::visit(Dispatch{}, parseCommandLine({argv, argv + argc}));
   } catch (const scene::SceneError& e) {
     fmt::print(stderr, "{}\n", e.what());  // begins with FILE:LINE:COLUMN, so that editors find the place
+    return kUsageError;
+  } catch (const scene::DrawingError& e) {
+    fmt::print(stderr, "{}\n", e.what());
     return kUsageError;
   } catch (const UsageError& e) {
     return fail(kUsageError, e.what());

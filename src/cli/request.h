@@ -5,7 +5,9 @@
 #include <variant>
 #include <vector>
 
+#include "export/field_painter.h"
 #include "run/run.h"
+#include "scene/shape_argument.h"
 
 namespace froude::cli {
 
@@ -21,12 +23,21 @@ struct ExplainRequest {
   std::string scene;
   bool json = false;
 };
+/// One of: a picture, answers at points, a comparison.
+struct FieldRequest {
+  std::string shape;
+  scene::SvgOptions svg;
+  std::string output;  // .png or .svg; with points .csv, or empty for stdout
+  std::string points;  // "-": standard input
+  bool check = false;
+  exporting::FieldPicture picture;
+};
 struct DoctorRequest {
   bool json = false;
 };
 
-using Request =
-    std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest, DoctorRequest>;
+using Request = std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest,
+                             FieldRequest, DoctorRequest>;
 
 /// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
 /// right.

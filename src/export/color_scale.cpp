@@ -18,6 +18,10 @@ constexpr std::array<std::array<double, 3>, 11> kViridis = {{{68, 1, 84},
                                                              {189, 223, 38},
                                                              {253, 231, 37}}};
 
+using Stops = std::array<std::array<double, 3>, 3>;
+constexpr Stops kBlues = {{{207, 226, 243}, {88, 152, 204}, {14, 55, 112}}};
+constexpr Stops kOranges = {{{253, 232, 205}, {236, 150, 66}, {122, 55, 10}}};
+
 double fluidHeight(const scene::Scene& scene) {
   const Box& domain = scene.world.domain.box;
   double top = -kInfinity;
@@ -61,6 +65,17 @@ Color viridis(double t) {
   const double w = place - static_cast<double>(k);
   const auto mix = [&](std::size_t c) {
     return static_cast<std::uint8_t>(std::lround((1.0 - w) * kViridis[k][c] + w * kViridis[k + 1][c]));
+  };
+  return {mix(0), mix(1), mix(2)};
+}
+
+Color diverging(double t) {
+  const Stops& stops = t < 0.0 ? kBlues : kOranges;
+  const double place = 2.0 * std::min(std::abs(t), 1.0);
+  const std::size_t k = place < 1.0 ? 0 : 1;
+  const double w = place - static_cast<double>(k);
+  const auto mix = [&](std::size_t c) {
+    return static_cast<std::uint8_t>(std::lround((1.0 - w) * stops[k][c] + w * stops[k + 1][c]));
   };
   return {mix(0), mix(1), mix(2)};
 }

@@ -18,6 +18,10 @@ struct Color {
 /// original.
 Color viridis(double t);
 
+/// For signed values, t in [−1, 1]: blues below zero, oranges above, darker away from zero, with a step at zero so that
+/// the sign is seen everywhere. Blue and orange are told apart by people with every common colour blindness.
+Color diverging(double t);
+
 /// Smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 · 10^k that is at least `value` > 0.
 double roundUp(double value);
 /// Largest of 1, 2, 5 · 10^k that is at most `value` > 0.

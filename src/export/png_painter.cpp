@@ -10,6 +10,7 @@
 
 #include "export/frames.h"
 #include "export/png_particles.h"
+#include "export/sketch.h"
 #include "run/atomic_file.h"
 
 namespace froude::exporting {
@@ -24,17 +25,6 @@ constexpr double kBar = 340.0;
 constexpr double kSmallestBullet = 1.25;  // radius
 constexpr double kSmallestDrop = 3.5;     // radius of a fluid's particle that is seen by itself [pixels]
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
-
-void grey(cairo_t* cr, double level) { cairo_set_source_rgb(cr, level, level, level); }
-
-/// 0.5 → "0.5 m", 0.002 → "2 mm".
-std::string lengthLabel(double metres) {
-  if (metres >= 1000.0) return fmt::format("{:g} km", metres / 1000.0);
-  if (metres >= 1.0) return fmt::format("{:g} m", metres);
-  if (metres >= 0.01) return fmt::format("{:g} cm", metres * 100.0);
-  if (metres >= 0.001) return fmt::format("{:g} mm", metres * 1000.0);
-  return fmt::format("{:g} µm", metres * 1e6);
-}
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
@@ -81,19 +71,10 @@ void PngPainter::draw(const std::string& file, const World& world) const {
   drawBodies(cr, world);
   drawSides(cr);
   drawHeader(cr, world.time());
-  drawScaleBar(cr);
+  drawScale(cr);
   drawColorBar(cr);
 
-  std::string png;
-  const auto append = [](void* to, const unsigned char* bytes, unsigned int count) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  cairo_status_t status = cairo_status(cr);
-  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface.get(), append, &png);
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw OutputError(fmt::format("{}: cannot be drawn: {}", file, cairo_status_to_string(status)));
-  run::writeWholeFile(file, png);
+  run::writeWholeFile(file, pngBytes(cr, surface.get(), file));
 }
 
 void PngPainter::drawParticles(const World& world, std::uint8_t* data, int stride) const {
@@ -150,9 +131,9 @@ void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
       }
       cairo_close_path(cr);
     }
-    grey(cr, kBody);
+    setGrey(cr, kBody);
     cairo_fill_preserve(cr);  // holes run the other way round, so the winding rule leaves them out
-    grey(cr, kDark);
+    setGrey(cr, kDark);
     cairo_stroke(cr);
   }
   cairo_restore(cr);
@@ -179,7 +160,7 @@ void PngPainter::drawSides(cairo_t* cr) const {
     const Vec2 shift = closed ? Vec2(half * outward) : Vec2(0, 0);
     a = toPixel(a) + shift;
     b = toPixel(b) + shift;
-    grey(cr, closed ? kDark : kGrey);
+    setGrey(cr, closed ? kDark : kGrey);
     cairo_set_line_width(cr, closed ? 2.0 * half : kOutline * unit_);
     cairo_set_line_cap(cr, closed ? CAIRO_LINE_CAP_SQUARE : CAIRO_LINE_CAP_BUTT);
     const double dashes[] = {6.0 * unit_, 5.0 * unit_};
@@ -191,51 +172,20 @@ void PngPainter::drawSides(cairo_t* cr) const {
   cairo_set_dash(cr, nullptr, 0, 0.0);
 }
 
-/// `align` 0: begins at x, ½: centred, 1: ends at x. y is the base line.
-void PngPainter::text(cairo_t* cr, const std::string& text, double x, double y, double align) const {
-  cairo_text_extents_t e;
-  cairo_text_extents(cr, text.c_str(), &e);
-  cairo_move_to(cr, x - align * e.x_advance, y);
-  cairo_show_text(cr, text.c_str());
-}
-
 void PngPainter::drawHeader(cairo_t* cr, double time) const {
   const double margin = kMargin * unit_, base = top_ - 20.0 * unit_;
-  cairo_select_font_face(cr, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(cr, 20.0 * unit_);
-  grey(cr, kDark);
+  setFont(cr, 20.0 * unit_);
+  setGrey(cr, kDark);
   const std::string clock = fmt::format("t = {:.{}f} s", time, timeDigits_);
-  text(cr, clock, width_ - margin, base, 1.0);
-  cairo_text_extents_t e;
-  cairo_text_extents(cr, clock.c_str(), &e);
-  const double room = width_ - 3.0 * margin - e.x_advance;
-
-  std::string title = title_;
-  for (cairo_text_extents(cr, title.c_str(), &e); e.x_advance > room && !title.empty();
-       cairo_text_extents(cr, (title + "…").c_str(), &e)) {
-    while (!title.empty() && (static_cast<unsigned char>(title.back()) & 0xC0u) == 0x80u) title.pop_back();
-    if (!title.empty()) title.pop_back();
-  }
-  if (title.size() < title_.size()) title += "…";
-  text(cr, title, margin, base, 0.0);
+  drawText(cr, clock, width_ - margin, base, 1.0);
+  const double room = width_ - 3.0 * margin - textWidth(cr, clock);
+  drawText(cr, shortened(cr, title_, room), margin, base, 0.0);
 }
 
-void PngPainter::drawScaleBar(cairo_t* cr) const {
+void PngPainter::drawScale(cairo_t* cr) const {
+  setGrey(cr, kDark);
   const double metres = roundDown(0.18 * (right_ - left_) / pixels_);
-  const double x = std::max(left_, kMargin * unit_), y = bottom_ + 34.0 * unit_, tick = 5.0 * unit_;
-  const double end = x + metres * pixels_;
-  grey(cr, kDark);
-  cairo_set_line_width(cr, 2.0 * unit_);
-  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
-  cairo_move_to(cr, x, y - tick);
-  cairo_line_to(cr, x, y + tick);
-  cairo_move_to(cr, x, y);
-  cairo_line_to(cr, end, y);
-  cairo_move_to(cr, end, y - tick);
-  cairo_line_to(cr, end, y + tick);
-  cairo_stroke(cr);
-  cairo_set_font_size(cr, 16.0 * unit_);
-  text(cr, lengthLabel(metres), 0.5 * (x + end), y + 26.0 * unit_, 0.5);
+  drawScaleBar(cr, {metres, std::max(left_, kMargin * unit_), bottom_ + 34.0 * unit_, pixels_, unit_});
 }
 
 void PngPainter::drawColorBar(cairo_t* cr) const {
@@ -250,17 +200,17 @@ void PngPainter::drawColorBar(cairo_t* cr) const {
   cairo_set_source(cr, gradient);
   cairo_fill_preserve(cr);
   cairo_pattern_destroy(gradient);
-  grey(cr, kDark);
+  setGrey(cr, kDark);
   cairo_set_line_width(cr, 1.0 * unit_);
   cairo_stroke(cr);
   cairo_set_font_size(cr, 16.0 * unit_);
-  text(cr, scale_.label, x - 16.0 * unit_, y + tall, 1.0);
+  drawText(cr, scale_.label, x - 16.0 * unit_, y + tall, 1.0);
   for (const double tick : niceTicks(scale_.low * scale_.factor, scale_.high * scale_.factor, 5)) {
     const double at = x + length * scale_.position(tick / scale_.factor);
     cairo_move_to(cr, at, y + tall);
     cairo_line_to(cr, at, y + tall + 5.0 * unit_);
     cairo_stroke(cr);
-    text(cr, fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0.0 : tick), at, y + tall + 23.0 * unit_, 0.5);
+    drawText(cr, fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0.0 : tick), at, y + tall + 23.0 * unit_, 0.5);
   }
 }
 

@@ -31,9 +31,8 @@ class PngPainter {
   void drawBodies(_cairo* cr, const World& world) const;
   void drawSides(_cairo* cr) const;
   void drawHeader(_cairo* cr, double time) const;
-  void drawScaleBar(_cairo* cr) const;
+  void drawScale(_cairo* cr) const;
   void drawColorBar(_cairo* cr) const;
-  void text(_cairo* cr, const std::string& text, double x, double y, double align) const;
 
   DomainDef domain_;
   std::string title_;

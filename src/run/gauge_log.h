@@ -1,4 +1,4 @@
-// gauges.csv: a growing file of whole lines.
+// Growing files of whole lines: gauges.csv, leaks.csv.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace froude::run {
 
-/// Appends lines to gauges.csv. Every `append` is on its way to the disk when it returns; what could not be written
+/// Appends lines to a file. Every `append` is on its way to the disk when it returns; what could not be written
 /// whole is taken back. Throws exporting::OutputError.
 class GaugeLog {
  public:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "run/atomic_file.h"
@@ -10,13 +11,13 @@ namespace froude::run {
 namespace {
 
 constexpr std::uint64_t kVerboseEvery = 100;  // [sub-steps]
+constexpr std::size_t kMostLeaksTold = 20;    // a sub-step, on stderr; leaks.csv has all
 
 }  // namespace
 
 RunLoop::RunLoop(const RunFolder& folder, const scene::Scene& scene, World& world, GaugeSet& gauges, RunRecord record,
                  Start start)
-    : folder_(folder), scene_(scene), world_(world), gauges_(gauges), record_(std::move(record)) {
-  tracedLeaks_ = world.ledger().leaks;
+    : folder_(folder), scene_(scene), world_(world), gauges_(gauges), record_(std::move(record)), start_(start) {
   if (start == Start::New) writeWholeFile(folder.file("scene.toml"), scene.resolved);
   writeSummary(Status::Running);
   if (!gauges.columns().empty()) {
@@ -33,6 +34,7 @@ RunLoop::RunLoop(const RunFolder& folder, const scene::Scene& scene, World& worl
 }
 
 LoopResult RunLoop::run(double end, const SessionOptions& options, const SignalGuard& signals) {
+  openLeakLog(options);
   Progress progress(world_.time(), end, options.quiet);
   const std::chrono::duration<double> interval(scene_.output.checkpoint);
   while (world_.time() < end) {
@@ -69,6 +71,7 @@ void RunLoop::checkpoint() {
     gaugeLog_->sync();
     record_.gaugeBytes = gaugeLog_->bytes();
   }
+  if (leakLog_) leakLog_->sync();
   countWallTime();
   saveCheckpoint(folder_.file("checkpoint.h5"), world_, gauges_, record_);
   lastCheckpoint_ = Clock::now();
@@ -89,6 +92,17 @@ LoopResult RunLoop::finish(LoopResult result) {
   return result;
 }
 
+// A run that was traced goes on to be traced, or its list would end where it was stopped.
+void RunLoop::openLeakLog(const SessionOptions& options) {
+  const std::string file = folder_.file("leaks.csv");
+  const bool resumed = start_ == Start::Resumed;
+  if (!options.traceLeaks && !(resumed && std::filesystem::exists(file))) return;
+  leakLog_.emplace(file, resumed ? std::optional<double>(world_.time()) : std::nullopt);
+  EventSettings settings;
+  settings.leaks = true;
+  world_.record(settings);
+}
+
 void RunLoop::trace(const StepReport& report, const SessionOptions& options, Progress& progress) {
   const Ledger& ledger = world_.ledger();
   if (options.verbose && (ledger.substeps % kVerboseEvery == 0 || report.rejected > 0)) {
@@ -96,11 +110,9 @@ void RunLoop::trace(const StepReport& report, const SessionOptions& options, Pro
                              world_.time(), report.dt, name(report.limit), liveParticles(),
                              report.rejected > 0 ? fmt::format(", undone {} times", report.rejected) : ""));
   }
-  if (options.traceLeaks && ledger.leaks > tracedLeaks_) {
-    progress.say(fmt::format("sub-step {}: t = {:.6g} s, {} leaks ({} so far)", ledger.substeps, world_.time(),
-                             ledger.leaks - tracedLeaks_, ledger.leaks));
-    tracedLeaks_ = ledger.leaks;
-  }
+  if (!leakLog_ || world_.leaks().empty()) return;
+  leakLog_->append(world_);
+  for (const std::string& line : leakLines(world_, kMostLeaksTold)) progress.say(line);
 }
 
 void RunLoop::markFailed() noexcept {

@@ -11,6 +11,7 @@
 #include "run/checkpoint.h"
 #include "run/gauge_log.h"
 #include "run/gauges.h"
+#include "run/leak_log.h"
 #include "run/progress.h"
 #include "run/run.h"
 #include "run/run_folder.h"
@@ -53,6 +54,7 @@ class RunLoop {
   void takeOutput();
   void checkpoint();
   void writeSummary(Status status);
+  void openLeakLog(const SessionOptions& options);
   void trace(const StepReport& report, const SessionOptions& options, Progress& progress);
   LoopResult finish(LoopResult result);
   void countWallTime();
@@ -63,11 +65,12 @@ class RunLoop {
   World& world_;
   GaugeSet& gauges_;
   RunRecord record_;
+  Start start_;
   std::optional<GaugeLog> gaugeLog_;
+  std::optional<LeakLog> leakLog_;
   std::optional<exporting::FrameWriter> frames_;
   std::vector<std::string> rows_;
   Clock::time_point lastMoment_, lastCheckpoint_;
-  std::uint64_t tracedLeaks_ = 0;
 };
 
 }  // namespace froude::run

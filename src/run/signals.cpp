@@ -20,6 +20,15 @@ extern "C" void onSignal(int signal) {
 
 }  // namespace
 
+void letWritesFail() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) {
+    struct sigaction action {};
+    action.sa_handler = SIG_IGN;
+    sigemptyset(&action.sa_mask);
+    sigaction(signal, &action, nullptr);
+  }
+}
+
 SignalGuard::SignalGuard() {
   caughtSignal = 0;
   for (std::size_t i = 0; i < kSignals.size(); ++i) {

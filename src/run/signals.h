@@ -3,6 +3,9 @@
 
 namespace froude::run {
 
+/// From here on a write to a closed pipe or over a file-size limit fails instead of killing the program.
+void letWritesFail();
+
 /// Catches both signals while it lives; also lets writes to a closed pipe or over a file-size limit fail instead of
 /// kill. One object at a time.
 class SignalGuard {

@@ -14,23 +14,6 @@ namespace froude::scene {
 
 namespace {
 
-std::string readFile(const std::string& file) {
-  const std::filesystem::path path(file);
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw SceneError({file, 0, 0}, "file", "is a folder, right is a scene file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream)
-    throw SceneError({file, 0, 0}, "file",
-                     std::filesystem::exists(path, error)
-                         ? "cannot be read, right is a file with read permission"
-                         : "there is no such file, right is the path of a scene (.toml)");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (stream.bad()) throw SceneError({file, 0, 0}, "file", "reading stopped half-way");
-  return text.str();
-}
-
 /// The sections in the order of the documentation, whatever the order of reading was.
 std::string writeResolved(const Node& resolved, const std::string& file) {
   Node ordered;
@@ -85,17 +68,38 @@ std::size_t Scene::bulletCount() const {
   return count;
 }
 
+std::string readText(const std::string& file, const std::string& right) {
+  const std::filesystem::path path(file);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw SceneError({file, 0, 0}, "file", "is a folder, right is " + right);
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    throw SceneError({file, 0, 0}, "file",
+                     std::filesystem::exists(path, error) ? "cannot be read, right is a file with read permission"
+                                                          : "there is no such file, right is the path of " + right);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (stream.bad()) throw SceneError({file, 0, 0}, "file", "reading stopped half-way");
+  return text.str();
+}
+
+const std::vector<std::string>& sceneKeys() {
+  static const std::vector<std::string> kKeys{"format", "title", "seed",  "duration", "gravity", "accuracy",
+                                              "domain", "model", "fluid", "bullet",   "emitter", "sink",
+                                              "body",   "soft",  "gauge", "output"};
+  return kKeys;
+}
+
 Scene load(const std::string& file, const std::vector<Override>& overrides) {
-  const std::string text = readFile(file);
+  const std::string text = readText(file, "a scene (.toml)");
   Node document = parseDocument(file, text);
   for (const Override& change : overrides) applyOverride(document, file, change);
   Draft draft;
   draft.scene.file = file;
   draft.scene.name = std::filesystem::path(file).stem().string();
   draft.scene.sha256 = sha256(text);
-  TableReader root(file, document, "",
-                   {"format", "title", "seed", "duration", "gravity", "accuracy", "domain", "model", "fluid", "bullet",
-                    "emitter", "sink", "body", "soft", "gauge", "output"});
+  TableReader root(file, document, "", sceneKeys());
   readAll(root, draft);
   checkEmitters(root, draft);
   checkMemory(draft);

@@ -148,13 +148,13 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 }
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
-  for (const char* command : {"run", "check", "explain", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "resume", "doctor"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
     EXPECT_NE(help.find("Example:\n  froude " + std::string(command)), std::string::npos) << help;
     EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
-  for (const char* command : {"run", "check", "explain", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "resume", "doctor"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }
@@ -164,6 +164,39 @@ TEST(CommandLine, the_version_line_has_version_commit_and_simd_target) {
   EXPECT_EQ(line.find("froude 0."), 0u) << line;
   EXPECT_NE(line.find("commit "), std::string::npos);
   EXPECT_NE(line.find("SIMD " + std::string(name(bestSimdTarget()))), std::string::npos);
+}
+
+TEST(CommandLine, field_takes_all_its_options) {
+  const auto field =
+      std::get<FieldRequest>(parse({"field", "a.toml#b", "-o", "a.svg", "--offset", "0.1", "--offset", "-0.25",
+                                    "--show", "cells,distance", "--width", "640", "--band", "0.5", "--cell", "0.01"}));
+  EXPECT_EQ(field.shape, "a.toml#b");
+  EXPECT_EQ(field.output, "a.svg");
+  EXPECT_EQ(field.picture.offsets, (std::vector<double>{0.1, -0.25}));
+  EXPECT_EQ(field.picture.layers,
+            (std::vector<exporting::FieldLayer>{exporting::FieldLayer::Cells, exporting::FieldLayer::Distance}));
+  EXPECT_EQ(field.picture.width, 640);
+  EXPECT_EQ(field.picture.band, 0.5);
+  EXPECT_EQ(field.picture.cell, 0.01);
+  const auto points = std::get<FieldRequest>(parse({"field", "a.csv", "--at", "-"}));
+  EXPECT_EQ(points.points, "-");
+  EXPECT_TRUE(points.output.empty());
+  EXPECT_EQ(std::get<FieldRequest>(parse({"field", "a.svg#b", "-o", "a.png", "--scale", "0.001"})).svg.scale, 0.001);
+}
+
+TEST(CommandLine, field_says_what_it_could_be_asked) {
+  expectComplaint({"field", "a.toml"}, {"-o FILE.png", "--at POINTS.csv", "--check"});
+  expectComplaint({"field", "a.toml", "-o", "a.jpg"}, {"a.jpg", "FILE.png or FILE.svg"});
+  expectComplaint({"field", "a.toml", "-o", ".png"}, {".png"});
+  expectComplaint({"field", "a.toml", "--at", "p.csv", "-o", "a.png"}, {"a.png", "FILE.csv"});
+  expectComplaint({"field", "a.toml", "--at", "p.csv", "--offset", "1"}, {"--offset", "pictures"});
+  expectComplaint({"field", "a.toml", "--check", "-o", "a.png"}, {"--check stands alone"});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--show", "cels"}, {"'cels'", "\"cells\""});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--show", "cells,cells"}, {"'cells'", "twice"});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--width", "100"}, {"100", "from 320"});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--band", "0"}, {"--band", "above 0"});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--offset", "nan"}, {"--offset", "nan"});
+  expectComplaint({"field", "a.toml", "-o", "a.png", "--scale", "2"}, {"--scale", "FILE.svg#ID"});
 }
 
 TEST(CommandLine, quoting_gives_back_what_a_shell_would_split) {

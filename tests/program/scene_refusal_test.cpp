@@ -37,7 +37,7 @@ TEST(SceneRefusal, a_file_that_is_missing_a_folder_empty_or_not_TOML) {
   };
   EXPECT_EQ(what("/no/such/scene.toml"),
             "/no/such/scene.toml:0:0: file: there is no such file, right is the path of a scene (.toml)");
-  EXPECT_EQ(what("/tmp"), "/tmp:0:0: file: is a folder, right is a scene file");
+  EXPECT_EQ(what("/tmp"), "/tmp:0:0: file: is a folder, right is a scene (.toml)");
   expectRefusals({{"", "1:1: format: ", "empty"},
                   {" \n\n\t", "1:1: format: ", "empty"},
                   {"format = 1\nwhat is this\n", "2:6: TOML: not a TOML document", ""},

@@ -33,7 +33,7 @@ TEST_F(Output, verbose_tells_of_steps_on_stderr) {
   const Outcome outcome = froude({"run", "s.toml", "--verbose", "--trace-leaks", "--set", "model.time_step=0.001"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("sub-step 100:"), std::string::npos) << outcome.err;
-  EXPECT_EQ(outcome.err.find(" leaks ("), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("leak:"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Output, the_summary_has_every_key_of_the_contract) {
