@@ -22,7 +22,7 @@ FieldSample startOf(const EdgeGrid& grid, const Vec2& center) {
 bool startsInside(const EdgeGrid& grid, const FieldSample& atStart, const Vec2& center, const Chord& chord,
                   SweepHit* hit) {
   if (!(atStart.distance < chord.radius - chord.skin) || (!atStart.exact && atStart.distance > 0.0)) return false;
-  const FieldSample sample = grid.sampleExact(center);
+  const FieldSample sample = atStart.edge >= 0 ? atStart : grid.sampleExact(center);
   *hit = {true, 0.0, center, sample.closest, sample.normal, sample.edge, -1, true};
   return true;
 }
