@@ -23,6 +23,7 @@ using D = hn::CappedTag<double, 8>;
 using I = hn::Rebind<std::int32_t, D>;
 using U = hn::RebindToUnsigned<D>;
 using V = hn::Vec<D>;
+using W = hn::Vec<hn::RebindToSigned<D>>;
 using M = hn::Mask<D>;
 
 constexpr std::size_t kChunk = 256;
@@ -33,19 +34,25 @@ constexpr std::size_t kEdgeDoubles = sizeof(GridEdge) / sizeof(double);
 constexpr std::size_t kStart = 0, kDirection = 4, kLength = 6;  // pairs of doubles in a GridEdge
 constexpr std::uint64_t kConvexStart = std::uint64_t{1} << 62;  // in its last eight bytes
 
-/// A chunk of points in the grid's frame, and those of them that are near an outline, with the codes of their lists.
+/// Points of a chunk, with the codes of their lists.
+struct Packed {
+  alignas(64) std::int32_t code[kChunk + kMostLanes];
+  alignas(64) std::int32_t point[kChunk + kMostLanes];
+  std::size_t count = 0;
+};
+
+/// A chunk of points in the grid's frame, and those of them that are near an outline.
 struct Chunk {
   alignas(64) double x[kChunk];
   alignas(64) double y[kChunk];
-  alignas(64) std::int32_t code[kChunk + kMostLanes];
-  alignas(64) std::int32_t point[kChunk + kMostLanes];
+  Packed few;             // with one or two edges: most
+  Packed many;            // with more
   std::size_t begin = 0;  // number of the chunk's first point
-  std::size_t near = 0;
 };
 
 constexpr unsigned kAllLanes = (1u << HWY_MIN(HWY_LANES(double), 8)) - 1;
 
-HWY_INLINE auto wide(hn::Vec<I> v) { return hn::PromoteTo(hn::RebindToSigned<D>(), v); }
+HWY_INLINE W wide(hn::Vec<I> v) { return hn::PromoteTo(hn::RebindToSigned<D>(), v); }
 
 HWY_INLINE unsigned bitsOf(M mask) {
   std::uint8_t bytes[8] = {};
@@ -79,20 +86,26 @@ class Batch {
     const std::size_t whole = begin + (end - begin) / lanes * lanes;
     for (; begin < whole; begin += kChunk) {
       chunk_.begin = begin;
-      chunk_.near = 0;
+      chunk_.few.count = chunk_.many.count = 0;
       for (std::size_t i = begin; i < std::min(whole, begin + kChunk); i += lanes) lookUp(i);
-      if (chunk_.near == 0) continue;
-      // The lanes behind the last point ask for it again.
-      for (std::size_t n = chunk_.near; n < chunk_.near + lanes; ++n) {
-        chunk_.code[n] = chunk_.code[chunk_.near - 1];
-        chunk_.point[n] = chunk_.point[chunk_.near - 1];
-      }
-      for (std::size_t n = 0; n < chunk_.near; n += lanes) nearest(n);
+      pad(chunk_.few);
+      for (std::size_t n = 0; n < chunk_.few.count; n += lanes) nearestOfTwo(n);
+      pad(chunk_.many);
+      for (std::size_t n = 0; n < chunk_.many.count; n += lanes) nearestOfMany(n);
     }
     batchScalar(task_, whole, end);
   }
 
  private:
+  /// The lanes behind the last point ask for it again.
+  static HWY_INLINE void pad(Packed& packed) {
+    if (packed.count == 0) return;
+    for (std::size_t n = packed.count; n < packed.count + hn::Lanes(D()); ++n) {
+      packed.code[n] = packed.code[packed.count - 1];
+      packed.point[n] = packed.point[packed.count - 1];
+    }
+  }
+
   /// A vector of points from i on. Those near an outline are packed for more; if there are others, all get the bound of
   /// their cell first.
   HWY_INLINE void lookUp(std::size_t i) {
@@ -127,37 +140,55 @@ class Batch {
       code = hn::IfThenElse(divided, partCode(divided, code, hn::Sub(cx, ix), hn::Sub(cy, iy)), code);
     }
     const auto listed = hn::Gt(code, hn::Set(n, static_cast<std::int32_t>(kListOffsetMask)));
-    pack(listed, code, static_cast<std::int32_t>(i - chunk_.begin));
+    const auto many = hn::Gt(code, hn::Set(n, static_cast<std::int32_t>(listCode(kListOffsetMask, 2))));
+    const auto first = static_cast<std::int32_t>(i - chunk_.begin);
+    pack(hn::AndNot(many, listed), code, first, chunk_.few);
+    if (HWY_UNLIKELY(!hn::AllFalse(n, many))) pack(many, code, first, chunk_.many);
     if (hn::AllTrue(n, listed)) return;
-    const auto clearance = hn::GatherIndex(hn::Rebind<float, D>(), grid_.clearance().data(), cell);
-    writeBound(i, x0, y0, hn::PromoteTo(d, clearance));
+    V clearance = hn::PromoteTo(d, hn::GatherIndex(hn::Rebind<float, D>(), grid_.clearance().data(), cell));
+    M answered = in;
+    if (!hn::AllTrue(d, in) && grid_.freeOutside()) {
+      answered = hn::Or(in, hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(d, kInfinity)));
+      clearance = hn::IfThenElse(in, clearance, gapToOutlines(x, y));
+    }
+    writeBound(i, x0, y0, clearance);
     const auto unlisted = hn::AndNot(listed, hn::Ne(code, hn::Zero(n)));
-    if (HWY_UNLIKELY(!hn::AllTrue(d, in) || !hn::AllFalse(n, unlisted))) {
+    if (HWY_UNLIKELY(!hn::AllTrue(d, answered) || !hn::AllFalse(n, unlisted))) {
       std::uint8_t odd[8] = {};
       hn::StoreMaskBits(n, unlisted, odd);
-      for (unsigned bits = (odd[0] | ~bitsOf(in)) & kAllLanes; bits != 0; bits &= bits - 1) {
+      for (unsigned bits = (odd[0] | ~bitsOf(answered)) & kAllLanes; bits != 0; bits &= bits - 1) {
         const std::size_t at = i - chunk_.begin + static_cast<std::size_t>(__builtin_ctz(bits));
         writeSample(task_, chunk_.begin + at, Vec2(chunk_.x[at], chunk_.y[at]));
       }
     }
   }
 
+  /// As EdgeGrid::lowerBound outside the grid.
+  HWY_INLINE V gapToOutlines(V x, V y) const {
+    const D d;
+    const Box& box = grid_.outlines();
+    const V zero = hn::Zero(d);
+    const V outX = hn::Max(hn::Max(hn::Sub(hn::Set(d, box.min.x()), x), hn::Sub(x, hn::Set(d, box.max.x()))), zero);
+    const V outY = hn::Max(hn::Max(hn::Sub(hn::Set(d, box.min.y()), y), hn::Sub(y, hn::Set(d, box.max.y()))), zero);
+    return hn::Mul(hn::Sqrt(hn::Add(hn::Mul(outX, outX), hn::Mul(outY, outY))), hn::Set(d, 1.0 - 1e-15));
+  }
+
   template <class Mask32, class V32>
-  HWY_INLINE void pack(Mask32 listed, V32 code, std::int32_t first) {
+  static HWY_INLINE void pack(Mask32 wanted, V32 code, std::int32_t first, Packed& packed) {
     const I n;
 #if HWY_TARGET <= HWY_AVX3
-    hn::StoreU(hn::Compress(code, listed), n, chunk_.code + chunk_.near);
-    hn::StoreU(hn::Compress(hn::Iota(n, first), listed), n, chunk_.point + chunk_.near);
-    chunk_.near += hn::CountTrue(n, listed);
+    hn::StoreU(hn::Compress(code, wanted), n, packed.code + packed.count);
+    hn::StoreU(hn::Compress(hn::Iota(n, first), wanted), n, packed.point + packed.count);
+    packed.count += hn::CountTrue(n, wanted);
 #else
     alignas(32) std::int32_t codes[kMostLanes];
     hn::Store(code, n, codes);
     std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(n, listed, bits);
+    hn::StoreMaskBits(n, wanted, bits);
     for (std::size_t k = 0; k < hn::Lanes(n); ++k) {
-      chunk_.code[chunk_.near] = codes[k];
-      chunk_.point[chunk_.near] = first + static_cast<std::int32_t>(k);
-      chunk_.near += bits[0] >> k & 1;
+      packed.code[packed.count] = codes[k];
+      packed.point[packed.count] = first + static_cast<std::int32_t>(k);
+      packed.count += bits[0] >> k & 1;
     }
 #endif
   }
@@ -196,62 +227,92 @@ class Batch {
     if (!b_.feature.empty()) std::fill_n(b_.feature.data() + i, hn::Lanes(d), FeatureKind::None);
   }
 
-  HWY_INLINE void nearest(std::size_t k) {
+  /// The closest feature so far; as EdgeGrid::Nearest, for one outline.
+  struct Best {
+    V inside, outside, square;  // squared distances
+    V x, y;                     // outward, unit for edges
+    V left;                     // of the line of the edge, signed
+    W edge;
+    M vertex;
+
+    HWY_INLINE Best()
+        : inside(hn::Set(D(), kInfinity)),
+          outside(inside),
+          square(inside),
+          x(hn::Zero(D())),
+          y(x),
+          left(x),
+          edge(hn::Zero(hn::RebindToSigned<D>())),
+          vertex(hn::MaskFromVec(x)) {}
+  };
+
+  HWY_INLINE void consider(W number, V x, V y, Best& best) const {
     const D d;
-    const I n;
     const U u;
-    const auto point = hn::LoadU(n, chunk_.point + k);
-    const V x = hn::GatherIndex(d, chunk_.x, wide(point)), y = hn::GatherIndex(d, chunk_.y, wide(point));
-    const auto code = hn::LoadU(n, chunk_.code + k);
+    const V zero = hn::Zero(d), infinity = hn::Set(d, kInfinity);
+    alignas(64) std::int64_t index[kMostLanes];
+    hn::Store(number, hn::RebindToSigned<D>(), index);
+    const auto* edges = reinterpret_cast<const double*>(grid_.edges().data());
+    const double* edge[kMostLanes];
+    for (std::size_t l = 0; l < hn::Lanes(d); ++l) edge[l] = edges + kEdgeDoubles * static_cast<std::size_t>(index[l]);
+    V ax, ay, dx, dy, length, flags;
+    loadPairs(edge, kStart, ax, ay);
+    loadPairs(edge, kDirection, dx, dy);
+    loadPairs(edge, kLength, length, flags);
+    const V armX = hn::Sub(x, ax), armY = hn::Sub(y, ay);
+    const V along = hn::Add(hn::Mul(dx, armX), hn::Mul(dy, armY));
+    const V left = hn::Sub(hn::Mul(dx, armY), hn::Mul(dy, armX));
+    const M vertex = hn::Lt(along, zero);
+    const V square = hn::IfThenElse(vertex, hn::Add(hn::Mul(armX, armX), hn::Mul(armY, armY)), hn::Mul(left, left));
+    const V counted = hn::IfThenElse(hn::Gt(along, length), infinity, square);
+    const M convex = hn::RebindMask(d, hn::TestBit(hn::BitCast(u, flags), hn::Set(u, kConvexStart)));
+    const M within = hn::Or(hn::AndNot(vertex, hn::Gt(left, zero)), hn::AndNot(convex, vertex));
+    best.inside = hn::IfThenElse(within, hn::Min(best.inside, counted), best.inside);
+    best.outside = hn::IfThenElse(within, best.outside, hn::Min(best.outside, counted));
+    const M better = hn::Lt(counted, best.square);
+    best.square = hn::IfThenElse(better, counted, best.square);
+    best.x = hn::IfThenElse(better, hn::IfThenElse(vertex, armX, dy), best.x);
+    best.y = hn::IfThenElse(better, hn::IfThenElse(vertex, armY, hn::Neg(dx)), best.y);
+    best.left = hn::IfThenElse(better, left, best.left);
+    best.edge = hn::IfThenElse(hn::RebindMask(hn::RebindToSigned<D>(), better), number, best.edge);
+    best.vertex = hn::Or(hn::And(better, vertex), hn::AndNot(better, best.vertex));
+  }
+
+  /// Both edges of a list by one look-up, and no branch that depends on the points.
+  HWY_INLINE void nearestOfTwo(std::size_t k) {
+    const hn::RebindToSigned<D> w;
+    const I n;
+    const auto point = hn::LoadU(n, chunk_.few.point + k);
+    const auto code = hn::LoadU(n, chunk_.few.code + k);
+    const W offset = wide(hn::And(code, hn::Set(n, static_cast<std::int32_t>(kListOffsetMask))));
+    const auto* lists = reinterpret_cast<const std::int64_t*>(grid_.lists().data());
+    const W both = hn::GatherOffset(w, lists, hn::ShiftLeft<2>(offset));
+    const W first = hn::And(both, hn::Set(w, 0xFFFFFFFF)), second = hn::ShiftRight<32>(both);
+    const auto one = hn::Lt(wide(code), hn::Set(w, static_cast<std::int64_t>(listCode(0, 2))));
+    const V x = hn::GatherIndex(D(), chunk_.x, wide(point)), y = hn::GatherIndex(D(), chunk_.y, wide(point));
+    Best best;
+    consider(first, x, y, best);
+    consider(hn::IfThenElse(one, first, second), x, y, best);
+    answer(chunk_.few, k, x, y, best);
+  }
+
+  HWY_INLINE void nearestOfMany(std::size_t k) {
+    const I n;
+    const auto point = hn::LoadU(n, chunk_.many.point + k);
+    const auto code = hn::LoadU(n, chunk_.many.code + k);
     const auto offset = hn::And(code, hn::Set(n, static_cast<std::int32_t>(kListOffsetMask)));
     const auto last = hn::Sub(hn::ShiftRight<kListOffsetBits>(code), hn::Set(n, 1));
     const auto* lists = reinterpret_cast<const std::int32_t*>(grid_.lists().data());
-    const auto* edges = reinterpret_cast<const double*>(grid_.edges().data());
     const auto longest = hn::GetLane(hn::MaxOfLanes(n, last));
-
-    const V zero = hn::Zero(d), infinity = hn::Set(d, kInfinity);
-    V inside = infinity, outside = infinity, best = infinity;
-    V bestX = zero, bestY = zero, bestLeft = zero, bestEdge = zero;
-    M bestVertex = hn::MaskFromVec(zero);
+    const V x = hn::GatherIndex(D(), chunk_.x, wide(point)), y = hn::GatherIndex(D(), chunk_.y, wide(point));
+    Best best;
     for (std::int32_t it = 0; it <= longest; ++it) {
-      const double* edge[kMostLanes];
-      alignas(64) std::int32_t index[kMostLanes];
-      const auto number = hn::GatherIndex(n, lists, hn::Add(offset, hn::Min(hn::Set(n, it), last)));
-      hn::Store(number, n, index);
-      for (std::size_t l = 0; l < hn::Lanes(d); ++l)
-        edge[l] = edges + kEdgeDoubles * static_cast<std::size_t>(index[l]);
-      V ax, ay, dx, dy, length, flags;
-      loadPairs(edge, kStart, ax, ay);
-      loadPairs(edge, kDirection, dx, dy);
-      loadPairs(edge, kLength, length, flags);
-      const V armX = hn::Sub(x, ax), armY = hn::Sub(y, ay);
-      const V along = hn::Add(hn::Mul(dx, armX), hn::Mul(dy, armY));
-      const V leftward = hn::Sub(hn::Mul(dx, armY), hn::Mul(dy, armX));
-      const M vertex = hn::Lt(along, zero);
-      const V square =
-          hn::IfThenElse(vertex, hn::Add(hn::Mul(armX, armX), hn::Mul(armY, armY)), hn::Mul(leftward, leftward));
-      const V counted = hn::IfThenElse(hn::Gt(along, length), infinity, square);
-      const M convex = hn::RebindMask(d, hn::TestBit(hn::BitCast(u, flags), hn::Set(u, kConvexStart)));
-      const M within = hn::Or(hn::AndNot(vertex, hn::Gt(leftward, zero)), hn::AndNot(convex, vertex));
-      inside = hn::IfThenElse(within, hn::Min(inside, counted), inside);
-      outside = hn::IfThenElse(within, outside, hn::Min(outside, counted));
-      const M better = hn::Lt(counted, best);
-      best = hn::IfThenElse(better, counted, best);
-      bestX = hn::IfThenElse(better, hn::IfThenElse(vertex, armX, dy), bestX);
-      bestY = hn::IfThenElse(better, hn::IfThenElse(vertex, armY, hn::Neg(dx)), bestY);
-      bestLeft = hn::IfThenElse(better, leftward, bestLeft);
-      bestEdge = hn::IfThenElse(better, hn::PromoteTo(d, number), bestEdge);
-      bestVertex = hn::Or(hn::And(better, vertex), hn::AndNot(better, bestVertex));
+      consider(wide(hn::GatherIndex(n, lists, hn::Add(offset, hn::Min(hn::Set(n, it), last)))), x, y, best);
     }
-    answer(k, x, y, {inside, outside, best, bestX, bestY, bestLeft, bestEdge, bestVertex});
+    answer(chunk_.many, k, x, y, best);
   }
 
-  struct Best {
-    V inside, outside, square, x, y, left, edge;
-    M vertex;
-  };
-
-  HWY_INLINE void answer(std::size_t n, V x, V y, const Best& best) {
+  HWY_INLINE void answer(const Packed& packed, std::size_t n, V x, V y, const Best& best) {
     const D d;
     const V rounding = hn::Set(d, grid_.rounding() * grid_.rounding());
     // As EdgeGrid::Nearest::closeSource: what is within rounding, of both kinds or of the boundary, is not for lanes.
@@ -269,29 +330,31 @@ class Batch {
       const double reach = kBandMargin * grid_.band();
       known = hn::And(known, hn::Le(best.square, hn::Set(d, reach * reach)));
     }
-    const std::size_t count = std::min(chunk_.near - n, hn::Lanes(d));
+    const std::size_t count = std::min(packed.count - n, hn::Lanes(d));
     const unsigned wide = bitsOf(known) & ((1u << count) - 1);
     const bool contiguous =
-        chunk_.point[n + count - 1] - chunk_.point[n] + 1 == static_cast<std::int32_t>(hn::Lanes(d)) &&
+        packed.point[n + count - 1] - packed.point[n] + 1 == static_cast<std::int32_t>(hn::Lanes(d)) &&
         count == hn::Lanes(d);
-    write(n, count, contiguous, distance, b_.distance);
+    write(packed, n, count, contiguous, distance, b_.distance);
     if (!b_.normalX.empty()) {
       const auto [wx, wy] = turned(normalX, normalY);
-      write(n, count, contiguous, wx, b_.normalX);
-      write(n, count, contiguous, wy, b_.normalY);
+      write(packed, n, count, contiguous, wx, b_.normalX);
+      write(packed, n, count, contiguous, wy, b_.normalY);
     }
-    if (!b_.closestX.empty()) writeClosest(n, count, contiguous, x, y, distance, normalX, normalY, best);
-    if (!b_.edge.empty() || !b_.feature.empty()) writeFeature(n, count, best);
+    if (!b_.closestX.empty()) writeClosest(packed, n, count, contiguous, x, y, distance, normalX, normalY, best);
+    if (!b_.edge.empty() || !b_.feature.empty()) writeFeature(packed, n, count, best);
     if (HWY_UNLIKELY(wide != (1u << count) - 1)) {
       for (unsigned odd = ~wide & ((1u << count) - 1); odd != 0; odd &= odd - 1) {
         const std::size_t k = n + static_cast<std::size_t>(__builtin_ctz(odd));
-        const auto at = static_cast<std::size_t>(chunk_.point[k]);
+        const auto at = static_cast<std::size_t>(packed.point[k]);
         writeSample(task_, chunk_.begin + at, Vec2(chunk_.x[at], chunk_.y[at]));
       }
     }
   }
 
-  std::size_t pointOf(std::size_t n) const { return chunk_.begin + static_cast<std::size_t>(chunk_.point[n]); }
+  std::size_t pointOf(const Packed& packed, std::size_t n) const {
+    return chunk_.begin + static_cast<std::size_t>(packed.point[n]);
+  }
 
   struct Pair {
     V x, y;
@@ -303,12 +366,13 @@ class Batch {
     return {hn::Sub(hn::Mul(c, x), hn::Mul(s, y)), hn::Add(hn::Mul(s, x), hn::Mul(c, y))};
   }
 
-  HWY_INLINE void writeClosest(std::size_t n, std::size_t count, bool contiguous, V x, V y, V distance, V normalX,
-                               V normalY, const Best& best) {
+  HWY_INLINE void writeClosest(const Packed& packed, std::size_t n, std::size_t count, bool contiguous, V x, V y,
+                               V distance, V normalX, V normalY, const Best& best) {
     const D d;
     // A vertex is itself: the point less the arm would round.
-    alignas(64) double ax[kMostLanes], ay[kMostLanes], e[kMostLanes];
-    hn::Store(best.edge, d, e);
+    alignas(64) double ax[kMostLanes], ay[kMostLanes];
+    alignas(64) std::int64_t e[kMostLanes];
+    hn::Store(best.edge, hn::RebindToSigned<D>(), e);
     for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
       const Vec2& a = grid_.edges()[static_cast<std::size_t>(e[k])].a;
       ax[k] = a.x();
@@ -321,32 +385,32 @@ class Batch {
       wx = hn::Add(hn::Set(d, task_.pose.position.x()), wx);
       wy = hn::Add(hn::Set(d, task_.pose.position.y()), wy);
     }
-    write(n, count, contiguous, wx, b_.closestX);
-    write(n, count, contiguous, wy, b_.closestY);
+    write(packed, n, count, contiguous, wx, b_.closestX);
+    write(packed, n, count, contiguous, wy, b_.closestY);
   }
 
-  HWY_INLINE void writeFeature(std::size_t n, std::size_t count, const Best& best) {
-    const D d;
-    alignas(64) double e[kMostLanes];
-    hn::Store(best.edge, d, e);
+  HWY_INLINE void writeFeature(const Packed& packed, std::size_t n, std::size_t count, const Best& best) {
+    alignas(64) std::int64_t e[kMostLanes];
+    hn::Store(best.edge, hn::RebindToSigned<D>(), e);
     const unsigned vertices = bitsOf(best.vertex);
     for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = pointOf(n + k);
+      const std::size_t i = pointOf(packed, n + k);
       if (!b_.edge.empty()) b_.edge[i] = static_cast<std::int32_t>(e[k]);
       if (!b_.feature.empty()) b_.feature[i] = (vertices >> k & 1) != 0 ? FeatureKind::StartVertex : FeatureKind::Edge;
     }
   }
 
-  HWY_INLINE void write(std::size_t n, std::size_t count, bool contiguous, V values, std::span<double> column) {
+  HWY_INLINE void write(const Packed& packed, std::size_t n, std::size_t count, bool contiguous, V values,
+                        std::span<double> column) {
     const D d;
     if (column.empty()) return;
     if (contiguous) {
-      hn::StoreU(values, d, column.data() + pointOf(n));
+      hn::StoreU(values, d, column.data() + pointOf(packed, n));
       return;
     }
     alignas(64) double each[kMostLanes];
     hn::Store(values, d, each);
-    for (std::size_t k = 0; k < count; ++k) column[pointOf(n + k)] = each[k];
+    for (std::size_t k = 0; k < count; ++k) column[pointOf(packed, n + k)] = each[k];
   }
 
   const BatchTask& task_;

@@ -13,8 +13,7 @@ namespace froude::detail {
 ///                               list, or of one that mixes outlines, and the edges follow it
 ///   1 | shift: 3 | first: 28    2^shift × 2^shift parts of the cell, row by row, at partCodes[first]; the code of the
 ///                               whole cell's list is at first − 1
-/// lists[e] is e for every edge e, so that a cell with one edge needs no list of its own; lists ends before offset 0 is
-/// used by anything but edge 0, whose code has a count.
+/// lists[e] is e for every edge e, so that a cell whose edges follow each other needs no list of its own.
 using CellCode = std::uint32_t;
 
 inline constexpr std::uint32_t kListOffsetBits = 26;

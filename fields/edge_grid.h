@@ -97,12 +97,15 @@ class FROUDE_API EdgeGrid {
     return {coarseLists_.data() + at + 1, coarseLists_[at]};
   }
 
-  /// The arrays, raw, for loops over lanes; behind the last cell there is one more, which is empty.
+  /// The arrays, raw, for loops over lanes; behind the last cell there is one more, which is empty,
+  /// and behind the last entry of the lists as well.
   std::span<const CellCode> codes() const { return codes_; }
   std::span<const CellCode> partCodes() const { return partCodes_; }
   std::span<const std::uint32_t> lists() const { return lists_; }
   /// Closer than this to a feature, signs are decided exactly [m].
   double rounding() const { return rounding_; }
+  /// True if every point outside the grid is outside everything.
+  bool freeOutside() const { return sealed_ && !walls_; }
   /// True if all edges belong to one outline.
   bool oneOutline() const { return sourceStarts_.size() == 2; }
 
@@ -119,8 +122,6 @@ class FROUDE_API EdgeGrid {
     return {at + 1, *at};
   }
   void layOut(const GridPlan& plan);
-  /// True if every point outside the grid is outside everything.
-  bool freeOutside() const { return sealed_ && !walls_; }
   FieldSample bound(const Vec2& p, double clearance) const;
   FieldSample searchRings(const Vec2& p, double clearance) const;
   FieldSample makeSample(const Vec2& p, std::uint32_t edge, bool inside) const;

@@ -208,21 +208,28 @@ class EdgeGridBuilder {
     sieve.groups().resize(groupMark);
   }
 
-  /// Stores the stack from `mark` on. Neighbours often keep the same edges: the last list is used again where it fits.
-  static CellCode storeList(const std::vector<std::uint32_t>& stack, std::size_t mark, bool oneSource, Piece& piece) {
+  /// Stores the stack from `mark` on, unless it stands somewhere already: edges that follow each other, as most do, in
+  /// the list of all edges, and what the neighbour keeps at the end of the last list.
+  CellCode storeList(const std::vector<std::uint32_t>& stack, std::size_t mark, bool oneSource, Piece& piece) const {
     const std::size_t count = stack.size() - mark;
-    if (count == 1) return listCode(stack[mark], 1);
-    const auto first = stack.begin() + static_cast<std::ptrdiff_t>(mark);
     const bool counted = oneSource && count <= kMostListed;
+    if (counted && stack.back() - stack[mark] == count - 1)
+      return listCode(stack[mark], static_cast<std::uint32_t>(count));
+    const auto first = stack.begin() + static_cast<std::ptrdiff_t>(mark);
     std::vector<std::uint32_t>& lists = piece.lists;
     if (counted && lists.size() > count &&
         std::equal(first, stack.end(), lists.end() - static_cast<std::ptrdiff_t>(count))) {
-      return listCode(static_cast<std::uint32_t>(lists.size() - count), static_cast<std::uint32_t>(count));
+      return ownCode(lists.size() - count, count);
     }
-    const auto offset = static_cast<std::uint32_t>(lists.size());
+    const std::size_t offset = lists.size();
     if (!counted) lists.push_back(static_cast<std::uint32_t>(count));
     lists.insert(lists.end(), first, stack.end());
-    return listCode(offset, counted ? static_cast<std::uint32_t>(count) : 0);
+    return ownCode(offset, counted ? count : 0);
+  }
+
+  /// Code of a list of the piece itself, until `join` knows where it goes: behind all edges.
+  CellCode ownCode(std::size_t offset, std::size_t count) const {
+    return listCode(static_cast<std::uint32_t>(g_.edges_.size() + offset), static_cast<std::uint32_t>(count));
   }
 
   /// Puts the pieces one after the other.
@@ -231,17 +238,17 @@ class EdgeGridBuilder {
                                 [](const Piece& piece) { return piece.lists.size(); });
     const auto parts = startsOf(pieces, 0, [](const Piece& piece) { return piece.partCodes.size(); });
     if (lists.back() > kListOffsetMask || parts.back() > kFirstPartMask) return false;
-    g_.lists_.resize(lists.back());
-    g_.lists_[0] = 0;
+    g_.lists_.assign(lists.back() + 1, 0);  // one entry behind the last, for loops that read in pairs
     for (std::uint32_t e = 0; e < g_.edges_.size(); ++e) g_.lists_[e] = e;
     g_.partCodes_.resize(parts.back());
     parallelFor(pieces.size(), 1, [&](std::size_t k, std::size_t) {
       const Piece& piece = pieces[k];
       const auto listBase = static_cast<std::uint32_t>(lists[k]);
+      const auto edgeCount = static_cast<std::uint32_t>(g_.edges_.size());
       const auto partBase = static_cast<std::uint32_t>(parts[k]);
       const auto moved = [&](CellCode code) {
-        if (code == 0 || (!isDivided(code) && listCount(code) == 1)) return code;
-        return code + (isDivided(code) ? partBase : listBase);
+        if (isDivided(code)) return code + partBase;
+        return listOffset(code) < edgeCount ? code : code + (listBase - edgeCount);
       };
       std::copy(piece.lists.begin(), piece.lists.end(), g_.lists_.begin() + listBase);
       std::transform(piece.partCodes.begin(), piece.partCodes.end(), g_.partCodes_.begin() + partBase, moved);
