@@ -148,7 +148,8 @@ class Batch {
     V clearance = hn::PromoteTo(d, hn::GatherIndex(hn::Rebind<float, D>(), grid_.clearance().data(), cell));
     M answered = in;
     if (!hn::AllTrue(d, in) && grid_.freeOutside()) {
-      answered = hn::Or(in, hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(d, kInfinity)));
+      const V infinity = hn::Set(d, kInfinity);
+      answered = hn::Or(in, hn::And(hn::Lt(hn::Abs(x), infinity), hn::Lt(hn::Abs(y), infinity)));
       clearance = hn::IfThenElse(in, clearance, gapToOutlines(x, y));
     }
     writeBound(i, x0, y0, clearance);
