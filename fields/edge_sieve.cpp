@@ -9,7 +9,7 @@ bool EdgeSieve::keepNearest(const Box& box, std::size_t begin, std::size_t end, 
   double upper = kInfinity;  // no point of the box is farther than this from its nearest source
   while (begin < end) {
     const std::uint32_t source = grid_.edges()[stack_[begin]].source;
-    std::size_t groupEnd = begin + 1;
+    std::size_t groupEnd = grid_.oneOutline() ? end : begin + 1;
     while (groupEnd < end && grid_.edges()[stack_[groupEnd]].source == source) ++groupEnd;
     const std::size_t count = groupEnd - begin;
     const std::size_t first = stack_.size();

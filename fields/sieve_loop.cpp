@@ -42,30 +42,36 @@ SieveResult sieve(const SieveTask& task, double* squares, std::uint32_t* kept) {
   const double w = box.max.x() - box.min.x(), h = box.max.y() - box.min.y();
   const Corners x{{0.0, w, w, 0.0}}, y{{0.0, 0.0, h, h}};
 
-  // The edges that win at each corner and at the centre.
-  std::uint32_t winner[5] = {0, 0, 0, 0, 0};
-  Corners best{{kInfinity, kInfinity, kInfinity, kInfinity}};
+  // The edges that win at each corner and at the centre; their places in the list are kept as numbers, one a lane.
+  Corners best{{kInfinity, kInfinity, kInfinity, kInfinity}}, winners{{0.0, 0.0, 0.0, 0.0}};
   double bestCenter = kInfinity;
+  std::size_t centerWinner = 0;
   for (std::size_t i = 0; i < task.count; ++i) {
     const GridEdge& e = task.edges[task.candidates[i]];
     const double armX = box.min.x() - e.a.x(), armY = box.min.y() - e.a.y();
     double* mine = squares + 4 * i;
     squaresOf(e, armX, armY, x, y, mine);
-    std::size_t wins = 0;
     for (std::size_t k = 0; k < 4; k += kLanes) {
       const V here = hn::Load(d, mine + k), there = hn::Load(d, best.at + k);
-      std::uint8_t bits[8] = {};
-      hn::StoreMaskBits(d, hn::Lt(here, there), bits);
-      wins |= static_cast<std::size_t>(bits[0] & ((1u << kLanes) - 1)) << k;
+      const V place = hn::Set(d, static_cast<double>(i));
+      hn::Store(hn::IfThenElse(hn::Lt(here, there), place, hn::Load(d, winners.at + k)), d, winners.at + k);
       hn::Store(hn::Min(here, there), d, best.at + k);
     }
-    for (; wins != 0; wins &= wins - 1) winner[__builtin_ctzll(wins)] = static_cast<std::uint32_t>(i);
     const double cx = armX + 0.5 * w, cy = armY + 0.5 * h;
     const double along = e.direction.x() * cx + e.direction.y() * cy;
     const double left = e.direction.x() * cy - e.direction.y() * cx;
     const double past = std::max(std::max(-along, along - e.length), 0.0);
     const double center = left * left + past * past;
-    if (center < bestCenter) bestCenter = center, winner[4] = static_cast<std::uint32_t>(i);
+    centerWinner = center < bestCenter ? i : centerWinner;
+    bestCenter = std::min(bestCenter, center);
+  }
+  const double halfDiagonal = 0.5 * std::sqrt(w * w + h * h);
+  if (task.count == 1) {
+    kept[0] = task.candidates[0];
+    const double most = std::max(std::max(best.at[0], best.at[1]), std::max(best.at[2], best.at[3]));
+    const double least = task.exact ? std::sqrt(squaredDistance(task.edges[kept[0]], box, task.rounding))
+                                    : std::max(0.0, std::sqrt(bestCenter) - halfDiagonal);
+    return {1, least, std::sqrt(most)};
   }
 
   // Squared distances of the points q to the corners, and a little.
@@ -73,7 +79,8 @@ SieveResult sieve(const SieveTask& task, double* squares, std::uint32_t* kept) {
   const double little = task.rounding * task.rounding / kSieveSlack;
   double most = kInfinity;
   for (std::size_t c = 0; c < 5; ++c) {
-    const GridEdge& e = task.edges[task.candidates[winner[c]]];
+    const std::size_t winner = c < 4 ? static_cast<std::size_t>(winners.at[c]) : centerWinner;
+    const GridEdge& e = task.edges[task.candidates[winner]];
     const double lowX = box.min.x() - e.a.x(), lowY = box.min.y() - e.a.y();
     const double armX = lowX + (c < 4 ? x.at[c] : 0.5 * w), armY = lowY + (c < 4 ? y.at[c] : 0.5 * h);
     const double along = std::clamp(e.direction.x() * armX + e.direction.y() * armY, 0.0, e.length);
@@ -102,7 +109,7 @@ SieveResult sieve(const SieveTask& task, double* squares, std::uint32_t* kept) {
     kept[result.kept++] = edge;
     if (task.exact) least = std::min(least, squaredDistance(task.edges[edge], box, task.rounding));
   }
-  result.least = task.exact ? std::sqrt(least) : std::max(0.0, std::sqrt(bestCenter) - 0.5 * std::sqrt(w * w + h * h));
+  result.least = task.exact ? std::sqrt(least) : std::max(0.0, std::sqrt(bestCenter) - halfDiagonal);
   return result;
 }
 
