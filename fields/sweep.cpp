@@ -13,9 +13,10 @@ double skinFor(const EdgeGrid& grid, std::initializer_list<Vec2> points) {
   return kSweepSkin * scale;
 }
 
-FieldSample startOf(const EdgeGrid& grid, const Vec2& center) {
+FieldSample startOf(const EdgeGrid& grid, const Vec2& center, double enough) {
   FieldSample start;
-  start.distance = grid.distance(center, &start.exact);
+  start.distance = grid.lowerBound(center);
+  if (!(start.distance > enough)) start.distance = grid.distance(center, &start.exact);
   return start;
 }
 
@@ -187,7 +188,9 @@ Transform RigidMotion::at(double t) const {
 SweepHit sweepDisc(const DistanceField& field, const Vec2& from, const Vec2& to, double radius) {
   FROUDE_ASSERT(radius >= 0.0 && radius <= field.band());
   if (!detail::finitePath(from, to)) return {};
-  return detail::sweepStill(field.grid(), from, to, radius, detail::startOf(field.grid(), from), nullptr);
+  const EdgeGrid& grid = field.grid();
+  return detail::sweepStill(grid, from, to, radius,
+                            detail::startOf(grid, from, detail::freeDistance(grid, from, to, radius)), nullptr);
 }
 
 SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double dt, const Vec2& from, const Vec2& to,
@@ -200,7 +203,7 @@ SweepHit sweepDisc(const DistanceField& field, const RigidMotion& motion, double
   const Vec2 end = motion.start.position + dt * motion.velocity;
   const double skin = detail::skinFor(grid, {from, to, motion.start.position, end});
   const Vec2 start = path.at(0.0);
-  const FieldSample atStart = detail::startOf(grid, start);
+  const FieldSample atStart = detail::startOf(grid, start, radius + 2.0 * skin);
   // The end matters to a polygon that does not turn; the other path is followed in chords of its own.
   const Vec2 stop = path.turn == 0.0 ? path.at(1.0) : start;
   const Chord whole{start, stop, radius, skin, detail::floorFor(radius, skin, atStart.distance)};

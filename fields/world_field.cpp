@@ -127,7 +127,8 @@ SweepHit WorldField::sweepDisc(const Vec2& from, const Vec2& to, double radius, 
   if (!detail::finitePath(from, to)) return {};
   SweepHit hit;
   if (acceptsAll(filter)) {
-    hit = detail::sweepStill(grid_, from, to, radius, detail::startOf(grid_, from), nullptr);
+    hit = detail::sweepStill(grid_, from, to, radius,
+                             detail::startOf(grid_, from, detail::freeDistance(grid_, from, to, radius)), nullptr);
   } else {
     const auto accepted = [&](std::uint32_t source) { return accepts(filter, source); };
     const detail::SourceFilter sources(accepted);
