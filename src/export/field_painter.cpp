@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <froude/fields/offset_curve.h>
 
@@ -97,7 +98,8 @@ Layout arrange(int width, std::size_t panels, const Vec2& size) {
 
 class Painter {
  public:
-  Painter(const DistanceField& field, std::string title, const FieldPicture& picture)
+  /// `quick` answers for the pixels: the same polygon's field, in cells that suit it.
+  Painter(const DistanceField& field, const DistanceField& quick, std::string title, const FieldPicture& picture)
       : field_(field), title_(std::move(title)), picture_(picture) {
     double margin = detail::kBandMargin * field.band();
     for (const double offset : picture.offsets) margin = std::max(margin, 1.15 * offset);
@@ -105,7 +107,7 @@ class Painter {
     if (picture_.layers.empty())
       picture_.layers = {FieldLayer::Distance, FieldLayer::Cells, FieldLayer::Vectors, FieldLayer::Features};
     layout_ = arrange(picture.width, picture_.layers.size(), view_.size());
-    raster_ = sampleField(field, view_, layout_.mapWidth, layout_.mapHeight);
+    raster_ = sampleField(quick, view_, layout_.mapWidth, layout_.mapHeight);
   }
 
   int width() const { return picture_.width; }
@@ -221,11 +223,18 @@ bool isPicture(const std::string& file) { return endsWith(file, ".png") || endsW
 
 std::vector<std::string> drawField(const std::string& file, const Polygon& polygon, const std::string& title,
                                    const FieldPicture& picture) {
-  const double band = picture.band > 0.0 ? picture.band : kShare * polygon.bounds().size().maxCoeff();
-  const DistanceField field(polygon, band, picture.cell);
-  const Painter painter(field, title, picture);
+  const double usual = kShare * polygon.bounds().size().maxCoeff();
+  const DistanceField field(polygon, picture.band > 0.0 ? picture.band : usual, picture.cell);
+  // Cells as they were asked for are shown. Millions of pixels are not answered by them: far too many or too large
+  // ones would take hours, and the answers are exact whatever the cells.
+  std::optional<DistanceField> suited;
+  if (picture.band > 0.0 || picture.cell > 0.0) suited.emplace(polygon, usual);
+  const Painter painter(field, suited ? *suited : field, title, picture);
   run::writeWholeFile(file, endsWith(file, ".svg") ? asSvg(painter, file, title) : asPng(painter, file));
   std::vector<std::string> remarks;
+  if (picture.cell > 0.0 && field.cellSize() > 1.001 * picture.cell)
+    remarks.push_back(fmt::format("cells of {:g} m would be too many and are {:.3g} m wide; right is that or more",
+                                  picture.cell, field.cellSize()));
   for (const double offset : picture.offsets)
     if (offsetCurve(polygon, offset).empty())
       remarks.push_back(

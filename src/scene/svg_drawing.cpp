@@ -8,7 +8,6 @@
 #include <fstream>
 #include <map>
 #include <polyclipping/clipper.hpp>
-#include <sstream>
 
 namespace froude::scene {
 
@@ -35,10 +34,14 @@ std::string readFile(const std::string& path) {
   if (!error && size > kMostBytes)
     throw DrawingError(fmt::format("{}: has {:.1f} MiB, right are at most {} MiB", path,
                                    static_cast<double>(size) / (1 << 20), kMostBytes >> 20));
-  std::ostringstream text;
-  text << stream.rdbuf();
+  // Devices and pipes have no size and may have no end.
+  std::string text(kMostBytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) throw DrawingError(fmt::format("{}: reading stopped half-way", path));
-  return text.str();
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > kMostBytes)
+    throw DrawingError(fmt::format("{}: has more than {} MiB, right are at most that", path, kMostBytes >> 20));
+  return text;
 }
 
 /// Powers of two apart, about the middle of a box; coordinates stay below 2³⁰, where Clipper's products fit 64 bits.

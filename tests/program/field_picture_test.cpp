@@ -152,6 +152,19 @@ TEST(FieldPicture, has_its_width_and_shows_all_panels_for_shapes_of_any_aspect) 
     }
 }
 
+TEST(FieldPicture, cells_that_would_be_too_many_are_remarked_on) {
+  TemporaryFolder folder;
+  FieldPicture what;
+  what.width = 320;
+  what.layers = {FieldLayer::Cells};
+  what.cell = 0.1;
+  EXPECT_TRUE(drawField(folder.file("a.png"), golden("star5"), "star", what).empty());
+  what.cell = 1e-9;
+  const std::vector<std::string> remarks = drawField(folder.file("a.png"), golden("star5"), "star", what);
+  ASSERT_EQ(remarks.size(), 1u);
+  EXPECT_NE(remarks[0].find("cells of 1e-09 m would be too many"), std::string::npos) << remarks[0];
+}
+
 TEST(FieldPicture, draws_the_same_bytes_again) {
   TemporaryFolder folder;
   drawField(folder.file("a.png"), golden("star5"), "star", {});

@@ -320,6 +320,15 @@ TEST(SvgDrawing, more_vertices_than_a_hundred_thousand_are_refused_with_advice) 
   }
 }
 
+TEST(SvgDrawing, a_device_without_an_end_is_refused_when_the_limit_is_reached) {
+  try {
+    scene::svgPolygon("/dev/zero", "", 0.0, 0.0, nullptr);
+    FAIL() << "was read to an end that it does not have";
+  } catch (const DrawingError& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 16 MiB"), std::string::npos) << error.what();
+  }
+}
+
 TEST(SvgDrawing, a_tangle_of_a_million_crossings_is_refused_at_once) {
   RandomStream random(3, 0);
   std::string tangle = "M";
