@@ -51,6 +51,9 @@ struct EdgeGrid::Nearest {
     bool byInside = isInside;  // which of the two features answers
     if (gap * gap <= 4.0 * doubt) {
       isInside = byInside = grid.contains(source, p);
+      // A point of the boundary counts as inside, but lies on a feature that may say otherwise.
+      if (isInside && outside < inside && onSegment(grid.edges_[outsideEdge].a, grid.edges_[outsideEdge].b, p))
+        byInside = false;
     } else if (nearer <= rounding * rounding) {
       isInside = onTheSpot(isInside ? insideEdge : outsideEdge, source);
     }

@@ -98,6 +98,18 @@ TEST(DistanceField, equals_the_golden_distances) {
   EXPECT_EQ(checked, 17 * 28);
 }
 
+TEST(DistanceField, vertices_of_a_shape_of_a_few_units_in_the_last_place_are_on_it) {
+  // 8 units in the last place of its coordinates, much less than what rounding can do to a distance there.
+  constexpr double kFar = 9e8, kSide = 9.5367431640625e-07;
+  const Polygon polygon = Polygon::make({{kFar, kFar}, {kFar + kSide, kFar}, {kFar + kSide, kFar + kSide}});
+  const DistanceField field(polygon, kSide);
+  for (const Vec2& v : polygon.vertices()) {
+    EXPECT_EQ(field.sampleExact(v).distance, 0.0);
+    EXPECT_EQ(field.sampleExact(v).closest, v);
+  }
+  EXPECT_NEAR(field.sampleExact(Vec2(kFar - kSide, kFar)).distance, kSide, 1e-20);
+}
+
 TEST(DistanceField, is_exact_in_the_band_and_bounded_beyond_for_every_shape_place_and_scale) {
   RandomStream random(5, 0);
   int exactCount = 0;
