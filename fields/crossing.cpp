@@ -8,9 +8,25 @@ namespace froude {
 namespace detail {
 namespace {
 
-bool apart(const GridEdge& e, const Vec2& p, const Vec2& q) {
-  return std::max(e.a.x(), e.b.x()) < std::min(p.x(), q.x()) || std::min(e.a.x(), e.b.x()) > std::max(p.x(), q.x()) ||
-         std::max(e.a.y(), e.b.y()) < std::min(p.y(), q.y()) || std::min(e.a.y(), e.b.y()) > std::max(p.y(), q.y());
+bool apart(const GridEdge& e, const Vec2& low, const Vec2& high) {
+  return std::max(e.a.x(), e.b.x()) < low.x() || std::min(e.a.x(), e.b.x()) > high.x() ||
+         std::max(e.a.y(), e.b.y()) < low.y() || std::min(e.a.y(), e.b.y()) > high.y();
+}
+
+// True if the piece passes into the solid through the edge, its end left out, its start counted: through its inside, or
+// at its start vertex, where `before` is the edge that ends there (null: none). Precondition: their boxes meet.
+bool entersThrough(const GridEdge& e, const GridEdge* before, const Vec2& from, const Vec2& to) {
+  const int a = orientation(from, to, e.a), b = orientation(from, to, e.b);
+  if (a * b > 0) return false;
+  if (a * b < 0) return orientation(e.a, e.b, from) <= 0 && orientation(e.a, e.b, to) > 0;
+  // The end vertex is the start of the next edge.
+  if (a != 0 || before == nullptr || to == e.a || !onSegment(from, to, e.a)) return false;
+  // Of the line through the vertex each half is inside the solid's angle or not, whatever its length.
+  const auto isInside = [&](const Vec2& p) {
+    const bool ofFirst = orientation(before->a, e.a, p) > 0, ofSecond = orientation(e.a, e.b, p) > 0;
+    return e.convexStart != 0 ? ofFirst && ofSecond : ofFirst || ofSecond;
+  };
+  return isInside(to) && (from == e.a || !isInside(from));
 }
 
 // The part of the piece that is in the box, as shares of it; false: none.
@@ -39,40 +55,28 @@ Vec2 meetingPoint(const GridEdge& e, const Vec2& from, const Vec2& to) {
 
 }  // namespace
 
-bool entersThrough(const GridEdge& e, const GridEdge* before, const Vec2& from, const Vec2& to) {
-  if (apart(e, from, to)) return false;
-  const int a = orientation(from, to, e.a), b = orientation(from, to, e.b);
-  if (a * b > 0) return false;
-  if (a * b < 0) return orientation(e.a, e.b, from) <= 0 && orientation(e.a, e.b, to) > 0;
-  // The end vertex is the start of the next edge.
-  if (a != 0 || before == nullptr || to == e.a || !onSegment(from, to, e.a)) return false;
-  // Of the line through the vertex each half is inside the solid's angle or not, whatever its length.
-  const auto isInside = [&](const Vec2& p) {
-    const bool ofFirst = orientation(before->a, e.a, p) > 0, ofSecond = orientation(e.a, e.b, p) > 0;
-    return e.convexStart != 0 ? ofFirst && ofSecond : ofFirst || ofSecond;
-  };
-  return isInside(to) && (from == e.a || !isInside(from));
-}
-
 std::int32_t enteredEdge(const EdgeGrid& grid, const Vec2& from, const Vec2& to,
                          FunctionRef<bool(std::uint32_t)> accepts) {
-  const double length = (to - from).stableNorm();
+  const double length = (to - from).norm();
   if (!(length > 0.0) || !std::isfinite(length)) return -1;
-  if (grid.inGrid(from) && grid.clearance()[grid.cellOf(from)] > length * (1.0 + 1e-12)) return -1;
-  double begin, end;
-  if (!clip(grid.box(), from, to, &begin, &end)) return -1;
+  const bool starts = grid.inGrid(from);
+  if (starts && static_cast<double>(grid.clearance()[grid.cellOf(from)]) > length * (1.0 + 1e-12)) return -1;
+  double begin = 0.0, end = 1.0;
+  if (!(starts && grid.inGrid(to)) && !clip(grid.box(), from, to, &begin, &end)) return -1;
   const std::span<const GridEdge> edges = grid.edges();
+  const Vec2 low = from.cwiseMin(to), high = from.cwiseMax(to);
   // What the lists of a place hold is all that comes within the band of it. A little less each time, for rounding.
   const double stride = 0.99 * grid.band();
   for (double at = begin * length; at <= end * length;) {
     const Vec2 place = (from + at / length * (to - from)).cwiseMax(grid.box().min).cwiseMin(grid.box().max);
-    const double clearance = grid.clearance()[grid.cellOf(place)];
+    const double clearance = static_cast<double>(grid.clearance()[grid.cellOf(place)]);
     if (clearance > stride) {
       at += 0.99 * clearance;
       continue;
     }
     for (const std::uint32_t i : grid.within(place)) {
       const GridEdge& e = edges[i];
+      if (apart(e, low, high)) continue;
       const GridEdge* before = e.previous < 0 ? nullptr : &edges[static_cast<std::size_t>(e.previous)];
       if (!entersThrough(e, before, from, to) || !accepts(e.source)) continue;
       // A wall of the domain goes on beyond the grid, past an open side, where it is none.

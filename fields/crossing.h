@@ -13,11 +13,6 @@ class DistanceField;
 namespace detail {
 
 class EdgeGrid;
-struct GridEdge;
-
-/// True if the piece from → to passes into the solid through the edge, its end left out, its start counted: through its
-/// inside, or at its start vertex, where `before` is the edge that ends there (null: none).
-FROUDE_API bool entersThrough(const GridEdge& edge, const GridEdge* before, const Vec2& from, const Vec2& to);
 
 /// The first edge in the order of the search, of a source that `accepts` says, through which the piece enters.
 FROUDE_API std::int32_t enteredEdge(const EdgeGrid& grid, const Vec2& from, const Vec2& to,

@@ -36,7 +36,7 @@ struct StepContext {
   SimdTarget simd;
   /// Of the fluid's pool, in scenes with fluid nozzles: until when a nozzle carries a particle at its own velocity [s].
   std::optional<ColumnId<double>> carriedUntil = std::nullopt;
-  /// Null where nobody listens.
+  /// Null where nobody listens: then bullets that overlapped nothing at the start are not checked for leaks.
   LeakRecorder* leaks = nullptr;
 };
 

@@ -63,7 +63,8 @@ bool Ballistic::follow(const StepContext& context, const DiscContact& disc, Part
   if (path.crushed) {
     ++crushed_[i / kBlockSize];
     pool.kill(i);
-  } else {
+  } else if (context.leaks != nullptr || path.startedInside) {
+    // The check of every path would cost a fifth of a step: only who listens pays. What overlapped is rare.
     leak = checkPath(context.obstacles, at, path.x, disc, path);
     if (leak.leaked) {
       leaks_[i / kBlockSize].push_back({i, at, path.x, leak.inside, leak.body, leak.at});

@@ -20,7 +20,8 @@ PathLeak checkPath(const Obstacles& obstacles, const Vec2& x, const Vec2& end, c
   }
   if (path.contacts > kMaxBounces) piece.carrier = path.impulses[kMaxBounces].body;
   if (!leak.leaked) leak = checkTo(end, 1.0);
-  leak.inside = obstacles.inside(end, disc.filter);
+  // A disc that overlapped nothing at the start and entered nothing is not inside at the end.
+  if (leak.leaked || disc.radius == 0.0 || path.startedInside) leak.inside = obstacles.inside(end, disc.filter);
   leak.leaked = leak.leaked || leak.inside;
   return leak;
 }

@@ -13,12 +13,13 @@ constexpr int kHalvings = 40;        // of a chord: its departure from the curve
 struct SeenPiece {
   const DistanceField& field;
   const RigidMotion& motion;
-  double dt;      // of the sub-step [s]
-  double t0, t1;  // of the piece, shares of the sub-step
-  Vec2 from, to;  // in the world [m]
+  const Transform& last;  // pose at the end of the sub-step
+  double dt;              // of the sub-step [s]
+  double t0, t1;          // of the piece, shares of the sub-step
+  Vec2 from, to;          // in the world [m]
 
-  Vec2 start() const { return motion.at(t0 * dt).toLocal(from); }
-  Vec2 end() const { return motion.at(t1 * dt).toLocal(to); }
+  Vec2 start() const { return (t0 > 0.0 ? motion.at(t0 * dt) : motion.start).toLocal(from); }
+  Vec2 end() const { return t1 < 1.0 ? motion.at(t1 * dt).toLocal(to) : last.toLocal(to); }
   Vec2 at(double share) const { return motion.at(share * dt).toLocal(from + (share - t0) / (t1 - t0) * (to - from)); }
 
   // A chord that enters counts if it goes on doing so however finely it is divided: the curve itself may not.
@@ -57,7 +58,8 @@ struct SeenPiece {
 
 Obstacles::Entry Obstacles::entry(const PathPiece& piece, const CollisionFilter& filter) const {
   Entry found;
-  forEachImage(piece.from, (piece.to - piece.from).norm(), [&](const Vec2& shift) {
+  const double length = (piece.to - piece.from).norm();
+  forEachImage(piece.from, length, [&](const Vec2& shift) {
     if (found.entered) return;
     const Vec2 from = piece.from + shift, to = piece.to + shift;
     if (const std::int32_t edge = fixed_->enteredEdge(from, to, filter); edge >= 0) {
@@ -70,13 +72,15 @@ Obstacles::Entry Obstacles::entry(const PathPiece& piece, const CollisionFilter&
     box.include(to);
     const auto check = [&](const Moving& m) {
       if (found.entered || !filter.accepts(m.group, m.collidesWith) || !m.swept.overlaps(box)) return;
-      const SeenPiece seen{*m.field, m.motion, dt_, piece.begin, piece.end, from, to};
+      // As the map of free space: the body at half of the sub-step, and how far it strays from there.
+      if (m.field->lowerBound(m.middle.toLocal(from)) - m.stray > length) return;
+      const SeenPiece seen{*m.field, m.motion, m.end, dt_, piece.begin, piece.end, from, to};
       const bool enters =
           piece.carrier == m.body ? enteredEdge(*m.field, seen.start(), seen.end()) >= 0 : seen.enters();
       if (enters) found = {true, m.body};
     };
     // As the sweep: what is listed near the start is all that a short piece can meet.
-    if ((to - from).norm() <= reach_) {
+    if (length <= reach_) {
       for (const std::uint32_t k : movingNear(from)) check(moving_[k]);
     } else {
       for (const Moving& m : moving_) check(m);
