@@ -75,6 +75,9 @@ class FROUDE_API WorldField {
   /// Earliest hit of a disc (0 ≤ radius ≤ band) over all that the filter accepts, as `sweepDisc` in sweep.h. What lies
   /// outside the grid is not hit.
   SweepHit sweepDisc(const Vec2& from, const Vec2& to, double radius, const CollisionFilter& filter = {}) const;
+  /// Number in `edges()` of an edge through which the straight piece from → to enters what the filter accepts, as
+  /// `enteredEdge` in crossing.h; −1: none. Independent of `sweepDisc`.
+  std::int32_t enteredEdge(const Vec2& from, const Vec2& to, const CollisionFilter& filter = {}) const;
 
   /// All edges: the walls' first, then polygon by polygon in the order given.
   std::span<const FieldEdge> edges() const { return edges_; }

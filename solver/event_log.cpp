@@ -41,7 +41,10 @@ void EventLog::add(const ParticleContact& c) {
 }
 
 void EventLog::add(const ParticleLeak& leak) {
-  leaks_.push_back({species_, pool_->handleAt(leak.particle), {}, leak.from, leak.to, leak.to, 0.0, time_ + dt_});
+  const bool ofBody = !leak.inside && leak.body >= 0;
+  const BodyId body = ofBody ? bodies_->id(static_cast<std::size_t>(leak.body)) : BodyId{};
+  leaks_.push_back({species_, pool_->handleAt(leak.particle), body, leak.from, leak.to,
+                    leak.inside ? leak.to : leak.entered, 0.0, time_ + dt_, leak.inside});
 }
 
 void EventLog::finishSpecies() {

@@ -34,7 +34,7 @@ class EventLog final : public ContactRecorder, public LeakRecorder {
   std::span<const ContactEvent> contacts() const { return contacts_; }
   std::span<const SinkEvent> sinks() const { return sinks_; }
   std::span<const LeakEvent> leaks() const { return leaks_; }
-  /// Those of the present attempt; body, boundary and depth are for the world to fill in.
+  /// Those of the present attempt; of what is inside, body, boundary and depth are for the world to fill in.
   std::span<LeakEvent> freshLeaks() { return std::span(leaks_).subspan(attemptLeaks_); }
 
  private:

@@ -36,7 +36,7 @@ struct StepContext {
   SimdTarget simd;
   /// Of the fluid's pool, in scenes with fluid nozzles: until when a nozzle carries a particle at its own velocity [s].
   std::optional<ColumnId<double>> carriedUntil = std::nullopt;
-  /// Null where nobody listens.
+  /// Null where nobody listens: then bullets that overlapped nothing at the start are not checked for leaks.
   LeakRecorder* leaks = nullptr;
 };
 
@@ -57,10 +57,13 @@ class ContactRecorder {
   virtual void add(const ParticleContact& contact) = 0;
 };
 
-/// A particle was found inside an obstacle at the end of a sub-step.
+/// A particle got into or through an obstacle.
 struct ParticleLeak {
   std::uint32_t particle;  // its index now
-  Vec2 from, to;           // at start and end [m]
+  Vec2 from, to;           // at start and end of the sub-step [m]
+  bool inside;             // its end is in an obstacle; else it went through
+  int body;                // that it went through; −1: a wall of the domain
+  Vec2 entered;            // start of the straight piece on which it did [m]
 };
 
 /// Who wants to hear of leaks. Called as ContactRecorder is.

@@ -146,7 +146,8 @@ class FROUDE_API World {
 
   // ---- events of the last step() or substep()
 
-  /// What to record from now on; nothing unless asked. Recorded or not, the state is the same to the bit.
+  /// What to record from now on; nothing unless asked. Recorded or not, the state is the same to the bit as long as no
+  /// bullet leaks (EventSettings::leaks).
   void record(const EventSettings& settings);
   /// In order of time by sub-step, there fluid before bullets, each by the particle's slot: the same on any number of
   /// threads. Good until the next step.

@@ -88,8 +88,11 @@ bool World::insideSolid(const Vec2& point, const CollisionFilter& filter) const 
 // What a leaked particle is in, by exact location in every body: the fields know neither depth nor owner deep inside.
 void World::Impl::explainLeaks(double dt) {
   for (LeakEvent& leak : events.freshLeaks()) {
+    if (!leak.inside) continue;
+    const CollisionFilter filter = filterOf(leak.species);
     leak.depth = kInfinity;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (!filter.accepts(bodies.definition(i).group, bodies.definition(i).collidesWith)) continue;
       const Polygon& shape = *bodies.definition(i).shape;
       const BodyMotion& m = bodies.motion(i);
       const Transform pose = Transform::of(m.position + dt * m.velocity, m.angle + dt * m.spin);

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include <froude/base/parallel.h>
+#include <froude/solver/coupling/leak_check.h>
 
 namespace froude {
 
@@ -20,6 +21,8 @@ void Ballistic::advance(const StepContext& context, ParticlePool& pool, ImpulseL
   map_.refresh(context.obstacles);
   contacts_.begin(pool.size());
   crushed_.assign(blockCount(pool.size()), 0);
+  if (leaks_.size() < crushed_.size()) leaks_.resize(crushed_.size());
+  for (std::vector<ParticleLeak>& block : leaks_) block.clear();
   near_.resize(pool.size());
   const Vec2 halfKick = 0.5 * context.dt * context.gravity.constant();
   const Flight flight{pool.x().data(), pool.y().data(), pool.vx().data(), pool.vy().data(),
@@ -39,6 +42,11 @@ void Ballistic::advance(const StepContext& context, ParticlePool& pool, ImpulseL
   });
   contacts_.book(mass_, impulses);
   stats.crushed += std::accumulate(crushed_.begin(), crushed_.end(), std::uint64_t{0});
+  for (const std::vector<ParticleLeak>& block : leaks_) {
+    stats.leaks += block.size();
+    if (context.leaks == nullptr) continue;
+    for (const ParticleLeak& leak : block) context.leaks->add(leak);
+  }
   if (context.gravity.isConstant()) {
     stats.gravityImpulse += mass_ * static_cast<double>(pool.size()) * context.dt * context.gravity.constant();
   }
@@ -51,16 +59,24 @@ bool Ballistic::follow(const StepContext& context, const DiscContact& disc, Part
   PathResult path;
   followPath(context.obstacles, at, Vec2(vx[i], vy[i]) + half, context.dt, disc, path);
   contacts_.add(i, path);
+  PathLeak leak;
   if (path.crushed) {
     ++crushed_[i / kBlockSize];
     pool.kill(i);
+  } else if (context.leaks != nullptr || path.startedInside) {
+    // The check of every path would cost a fifth of a step: only who listens pays. What overlapped is rare.
+    leak = checkPath(context.obstacles, at, path.x, disc, path);
+    if (leak.leaked) {
+      leaks_[i / kBlockSize].push_back({i, at, path.x, leak.inside, leak.body, leak.at});
+      pool.kill(i);
+    }
   }
   const Vec2 v = path.v + half;
   x[i] = path.x.x();
   y[i] = path.x.y();
   vx[i] = v.x();
   vy[i] = v.y();
-  return path.crushed || hasLeft(context.obstacles.domain().box, x[i], y[i]);
+  return path.crushed || leak.leaked || hasLeft(context.obstacles.domain().box, x[i], y[i]);
 }
 
 }  // namespace froude

@@ -33,8 +33,9 @@ class Ballistic {
   double mass_;
   FreeMap map_;
   ContactLog contacts_;
-  AlignedArray<std::uint32_t> near_;  // by block: the bullets that the map leaves to the exact query
-  std::vector<std::uint32_t> crushed_;
+  AlignedArray<std::uint32_t> near_;              // by block: the bullets that the map leaves to the exact query
+  std::vector<std::uint32_t> crushed_;            // counts, one a block
+  std::vector<std::vector<ParticleLeak>> leaks_;  // lists, one a block; empty but for what went wrong
   AlignedArray<std::uint8_t> left_;
 };
 

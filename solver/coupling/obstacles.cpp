@@ -140,23 +140,6 @@ std::span<const std::uint32_t> Obstacles::movingNear(const Vec2& x) const {
   return {coarseBodies_.data() + coarseStart_[c], coarseStart_[c + 1] - coarseStart_[c]};
 }
 
-template <typename Visit>
-void Obstacles::forEachImage(const Vec2& x, double margin, Visit&& visit) const {
-  visit(Vec2(0.0, 0.0));
-  const Vec2 period = domain_.box.size();
-  auto shifts = [&](bool periodic, double at, double low, double high, double length) {
-    if (!periodic) return 0.0;
-    if (at - low < margin) return length;
-    if (high - at < margin) return -length;
-    return 0.0;
-  };
-  const double sx = shifts(domain_.periodicX, x.x(), domain_.box.min.x(), domain_.box.max.x(), period.x());
-  const double sy = shifts(domain_.periodicY, x.y(), domain_.box.min.y(), domain_.box.max.y(), period.y());
-  if (sx != 0.0) visit(Vec2(sx, 0.0));
-  if (sy != 0.0) visit(Vec2(0.0, sy));
-  if (sx != 0.0 && sy != 0.0) visit(Vec2(sx, sy));
-}
-
 double Obstacles::movingClearance(const Vec2& x) const {
   if (moving_.empty()) return kInfinity;
   double result = reach_;  // a body that is not listed in this cell is farther than the reach

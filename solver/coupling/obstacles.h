@@ -27,6 +27,13 @@ struct ObstacleHit {
   bool startedInside = false;
 };
 
+/// A straight piece of a particle's path through a sub-step.
+struct PathPiece {
+  Vec2 from{0, 0}, to{0, 0};      // [m]
+  double begin = 0.0, end = 1.0;  // shares of the sub-step
+  int carrier = -1;  // the body that carries the particle, in whose frame the piece is straight; −1: none
+};
+
 /// Obstacles of a world. `beginStep` once a sub-step, then any number of queries from any threads.
 class Obstacles {
  public:
@@ -76,6 +83,17 @@ class Obstacles {
     bool startedInside = false;
   };
   RayHit ray(const Vec2& from, const Vec2& to, const CollisionFilter& filter) const;
+
+  /// Does a particle's centre enter an obstacle on this piece, seen in the obstacle's frame? By exact orientation, with
+  /// no use of `sweep`; see leak_check.h. Cost: a look-up for a piece that the clearance of its start proves free.
+  struct Entry {
+    bool entered = false;
+    int body = -1;  // −1: a wall of the domain
+  };
+  Entry entry(const PathPiece& piece, const CollisionFilter& filter) const;
+  /// Is x inside of what the filter accepts, with moving bodies at the end of the sub-step? Exact; the boundary is not
+  /// inside. Cost: a look-up for most places, else a distance query.
+  bool inside(const Vec2& x, const CollisionFilter& filter) const;
 
   /// Velocity of a body's material (its belt left out) at x during the sub-step; 0 for the domain (−1) [m/s].
   Vec2 velocityAt(int body, const Vec2& x) const;
@@ -180,6 +198,24 @@ class Obstacles {
   int coarseNx_ = 1, coarseNy_ = 1;
   AlignedArray<std::uint32_t> coarseStart_, coarseBodies_;
 };
+
+// x itself, and its images across the periodic sides that are nearer than the margin.
+template <typename Visit>
+void Obstacles::forEachImage(const Vec2& x, double margin, Visit&& visit) const {
+  visit(Vec2(0.0, 0.0));
+  const Vec2 period = domain_.box.size();
+  auto shifts = [&](bool periodic, double at, double low, double high, double length) {
+    if (!periodic) return 0.0;
+    if (at - low < margin) return length;
+    if (high - at < margin) return -length;
+    return 0.0;
+  };
+  const double sx = shifts(domain_.periodicX, x.x(), domain_.box.min.x(), domain_.box.max.x(), period.x());
+  const double sy = shifts(domain_.periodicY, x.y(), domain_.box.min.y(), domain_.box.max.y(), period.y());
+  if (sx != 0.0) visit(Vec2(sx, 0.0));
+  if (sy != 0.0) visit(Vec2(0.0, sy));
+  if (sx != 0.0 && sy != 0.0) visit(Vec2(sx, sy));
+}
 
 /// visit(i) for every position i of [begin, end) to which a solid may be as near as reach(i) [m] during the sub-step.
 /// Neighbours in memory should be neighbours in space: the look-up is made for a few at once.

@@ -22,6 +22,7 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
                 PathResult& result) {
   result.contacts = 0;
   result.crushed = false;
+  result.startedInside = false;
   Vec2 at = x;
   Vec2 velocity = v;
   double t = 0.0;
@@ -32,6 +33,7 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
       at = to;
       break;
     }
+    result.startedInside = result.startedInside || (t == 0.0 && hit.startedInside);
     const Vec2 before = velocity;
     velocity = disc.slides
                    ? bounced(velocity, hit.surfaceVelocity, hit.normal, 0.0, 0.0)

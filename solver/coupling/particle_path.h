@@ -24,7 +24,8 @@ struct PathResult {
   Vec2 x{0, 0};  // position at the end of the sub-step [m]
   Vec2 v{0, 0};  // velocity at the end [m/s]
   int contacts = 0;
-  bool crushed = false;  // no free place: squeezed between bodies
+  bool crushed = false;        // no free place: squeezed between bodies
+  bool startedInside = false;  // it overlapped an obstacle at the start
   // Left without values until there is a contact: most paths have none, and there are many paths.
   struct Impulse {
     int body;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <froude/base/parallel.h>
+#include <froude/solver/coupling/leak_check.h>
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/lattice.h>
@@ -383,13 +384,13 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
         contacts_.addMean(i, path, at, v, dt);
         to = path.x;
       }
-      if (context.obstacles.distance(to, point.filter).distance < 0.0) {
+      if (const PathLeak leak = checkPath(context.obstacles, at, to, point, path); leak.leaked) {
         // Only what is squeezed can be here: it has no free place.
         const auto particle = static_cast<std::uint32_t>(i);
         if (path.crushed)
           ++crushed_[begin / kBlockSize];
         else
-          leaks_[begin / kBlockSize].push_back({particle, at, to});
+          leaks_[begin / kBlockSize].push_back({particle, at, to, leak.inside, leak.body, leak.at});
         pool.kill(particle);
       }
       predictedX_[i] = to.x();

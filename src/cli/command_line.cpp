@@ -121,7 +121,8 @@ void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& t
       ->type_name("SECONDS");
   command.add_option("--simd", typed.simd, "instruction set: scalar, sse4, avx2 or avx3")->type_name("TARGET");
   command.add_flag("--trace-leaks", session.traceLeaks,
-                   "list every particle that leaked: when, where, into what; also in leaks.csv");
+                   "list every particle that leaked: when, where, into or through what; also in leaks.csv;"
+                   " checks the path of every bullet, which is slower");
   command.add_flag("--quiet", session.quiet, "errors only; the folder is still the last line on stdout");
   command.add_flag("--verbose", session.verbose, "a line for every 100th sub-step: its length and what bound it");
 }

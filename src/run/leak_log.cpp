@@ -70,11 +70,11 @@ std::vector<std::string> leakLines(const World& world, std::size_t most) {
       lines.push_back(fmt::format("… and {} more leaks in this sub-step", leaks.size() - most));
       break;
     }
+    const std::string where = leak.inside ? fmt::format("{:.3g} m inside", leak.depth) : "gone through";
     lines.push_back(
-        fmt::format("leak: t = {:.6g} s, {} particle {}.{} at ({:.6g}, {:.6g}), {:.3g} m inside {}, from "
-                    "({:.6g}, {:.6g})",
+        fmt::format("leak: t = {:.6g} s, {} particle {}.{} at ({:.6g}, {:.6g}), {} {}, from ({:.6g}, {:.6g})",
                     leak.time, kindOf(leak), leak.particle.slot, leak.particle.generation, leak.position.x(),
-                    leak.position.y(), leak.depth, ownerOf(world, leak), leak.from.x(), leak.from.y()));
+                    leak.position.y(), where, ownerOf(world, leak), leak.from.x(), leak.from.y()));
   }
   return lines;
 }

@@ -89,6 +89,32 @@ TEST(LeakEvents, change_no_bit_of_the_state_and_are_the_same_on_any_number_of_th
   }
 }
 
+TEST(LeakEvents, of_bullets_none_is_told_where_none_leaks_and_what_may_pass_a_body_passes_it) {
+  WorldDef def;
+  def.domain.box = {{0.0, 0.0}, {1.0, 1.0}};
+  def.bullet = BulletDef{};
+  def.bullet->collidesWith = 1;
+  for (const double y : {0.25, 0.5}) {
+    def.bodies.push_back(body("plate", Polygon::box({{-0.3, -0.5e-4}, {0.3, 0.5e-4}}), {0.5, y}));
+    def.bodies.back().motion = Motion::Scripted;
+    def.bodies.back().spin = 2.0;
+  }
+  def.bodies.back().group = 2;
+  std::string hash;
+  for (const bool asked : {false, true}) {
+    World world(def);
+    if (asked) world.record(leaksOnly());
+    const std::vector<Vec2> points = testing::latticePoints({{0.2, 0.7}, {0.8, 0.9}}, 0.01);
+    world.addBullets(points, std::vector<Vec2>(points.size(), Vec2(0.0, -3.0)));
+    ASSERT_TRUE(world.step(0.5).ok());
+    EXPECT_EQ(world.ledger().leaks, 0u);
+    const auto y = std::as_const(world).bullets()->y();
+    EXPECT_GT(std::count_if(y.begin(), y.end(), [](double at) { return at < 0.4; }), 100) << "below the upper plate";
+    if (!asked) hash = world.stateHash();
+    EXPECT_EQ(world.stateHash(), hash);
+  }
+}
+
 TEST(LeakEvents, a_step_tells_those_of_all_its_sub_steps) {
   World world = leakyWorld();
   world.record(leaksOnly());
