@@ -10,7 +10,7 @@
 namespace froude {
 
 /// A piece of an offset curve, walked with the solid on its left.
-struct OffsetPiece {
+struct FROUDE_API OffsetPiece {
   FeatureKind feature = FeatureKind::Edge;  ///< Edge: straight, parallel to it; StartVertex: an arc about it
   std::uint32_t edge = 0;                   ///< number of the edge or vertex
   Vec2 from{0.0, 0.0}, to{0.0, 0.0};        ///< [m]

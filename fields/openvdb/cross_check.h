@@ -37,7 +37,7 @@ struct CrossCheckRow {
 
 /// Slopes are those of log(error in metres) over log(voxel size), least squares: 1 is an error in proportion to the
 /// voxel.
-struct CrossCheck {
+struct FROUDE_API CrossCheck {
   std::vector<CrossCheckRow> rows;
   double slopeMax = 0.0;  ///< of the largest error over all points; NaN with fewer than two sizes
   double slopeRms = 0.0;  ///< of the root mean square
