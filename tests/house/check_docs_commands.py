@@ -93,6 +93,8 @@ class Judge:
                  "git": lambda w: None, "cd": lambda w: None, "apt-get": self.apt, "clang-format": lambda w: None}
         if program == "froude":
             return self.run_froude(words, expected)
+        if program == "python3":
+            return self.execute([sys.executable] + words[1:], expected)
         if program in known:
             return known[program](words)
         if program.endswith("_bench"):
@@ -105,6 +107,9 @@ class Judge:
         words = [self.froude] + words[1:]
         if len(words) > 1 and words[1] in ("run", "resume") and "--until" not in words and "--help" not in words:
             words += ["--until", SHORT]
+        return self.execute(words, expected)
+
+    def execute(self, words, expected):
         try:
             outcome = subprocess.run(words, cwd=self.folder, capture_output=True, text=True, timeout=LIMIT, check=False)
         except subprocess.TimeoutExpired:
