@@ -32,6 +32,7 @@ class ContactSearch {
         path_(chord.to - chord.from),
         reach_(chord.radius + chord.slack + chord.skin),
         near_(chord.floor + chord.slack),
+        floor_(chord.floor),
         skin_(chord.skin),
         rounding_(0.0625 * chord.skin),
         slack_(chord.slack),
@@ -59,6 +60,10 @@ class ContactSearch {
     if (!best_.hit || hit.time < best_.time || (hit.time == best_.time && hit.edge < best_.edge)) best_ = hit;
   }
 
+  /// True if the true path, where the chord is at `distance` from a feature and leaves it faster than they can part, is
+  /// not below the floor already: a feature that is met on the way, not at the start, may have been passed by then.
+  bool staysOff(double distance, double time) const { return distance - 4.0 * slack_ * time * (1.0 - time) >= floor_; }
+
   /// The part of the path over the edge's own strip. At a concave vertex, which no disc can touch, the strip is a skin
   /// longer, so that nothing slips between it and its neighbour's.
   void testEdge(std::uint32_t index, const GridEdge& e, const Vec2& arm, double sFrom, double sPath) {
@@ -75,7 +80,7 @@ class ContactSearch {
       const bool deeper = sBegin < 0.0 && sEnd < sBegin - rounding_ && orientation(e.a, e.b, from_) > 0;
       if (!deeper && !crossesExactly(index, e)) return;
     } else if (curved_) {
-      if (sBegin > reach_ ? sEnd >= reach_ : sPath >= 4.0 * slack_) return;
+      if (sBegin > reach_ ? sEnd >= reach_ : sPath >= 4.0 * slack_ && staysOff(sBegin, part.begin)) return;
     } else if (sEnd >= near_) {
       return;
     }
@@ -98,7 +103,7 @@ class ContactSearch {
     if (length == 0.0) return;
     const double derivative = armBegin.dot(path_) / length;
     if (begin <= reach_ && curved_) {
-      if (derivative * length < 4.0 * slack_) keep({true, part.begin, index, true});
+      if (derivative * length < 4.0 * slack_ || !staysOff(begin, part.begin)) keep({true, part.begin, index, true});
       return;
     }
     const double passing = std::abs(cross(path_, arm)) / length;
@@ -133,6 +138,7 @@ class ContactSearch {
   const Vec2 from_, to_, path_;
   const double reach_;  // contacts are placed at this distance
   const double near_;   // what stays farther is no contact
+  const double floor_;  // the same of the true path
   const double skin_, rounding_, slack_;
   const bool curved_;
   const bool exact_;  // a point that starts in contact: only what really crosses an edge counts

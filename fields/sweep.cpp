@@ -147,6 +147,7 @@ class CurveSearch {
           detail::firstContact(grid_, {path_.at(time), path_.at(time + step), radius_, skin_, floor_, slack});
       ++chords;
       if (!contact.hit) {
+        if (slack > graze_) chords = 0;  // off by more than a graze
         time += step;
         step *= 2.0;
         continue;

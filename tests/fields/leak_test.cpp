@@ -115,6 +115,31 @@ TEST(LongLeaks, none_in_random_swept_encounters_with_thin_concave_and_spinning_p
   RecordProperty("rested", static_cast<int>(all.rested));
 }
 
+// The bullet follows an edge of a turning polygon a nanometre off for 200 chords; then it meets another edge.
+TEST(Leaks, a_long_graze_does_not_make_the_contact_after_it_coarse) {
+  const std::vector<Target> targets = makeTargets(64);
+  RandomStream random(32, 7613);
+  Tally tally;
+  for (int k = 0; k < 2635;) {
+    const Target& target = targets[random.below(64)];
+    const Encounter e = makeEncounter(target, random);
+    if (target.field->sampleExact(e.motion.start.toLocal(e.from)).distance > e.radius + 1e-9) ++k;
+  }
+  const Target& target = targets[random.below(64)];
+  const Encounter e = makeEncounter(target, random);
+  ASSERT_EQ(target.edges.size(), 96u);
+  meet(target, e, &tally);
+  EXPECT_EQ(tally.leaks, 0);
+  const RigidMotion rest{e.motion.at(1.3390258638308644e-4), e.motion.velocity, e.motion.spin};
+  const Vec2 from(-1.614153387923235, -2.4371965472969692);
+  const Vec2 to(-1.361019097924707, -2.4357546856737087);
+  const double left = 1.926450775534614e-4 - 1.3390258638308644e-4;
+  const SweepHit hit = sweepDisc(*target.field, rest, 1.001 * left, from, Vec2(from + 1.001 * (to - from)), 0.0);
+  ASSERT_TRUE(hit.hit);
+  const Transform pose = rest.at(hit.time * 1.001 * left);
+  EXPECT_LT(target.field->sampleExact(pose.toLocal(hit.center)).distance, 1e-9) << "held off";
+}
+
 TEST(Leaks, the_counter_sees_a_path_that_goes_through) {
   const Polygon plate = Polygon::box({{-0.5, -0.5e-4}, {0.5, 0.5e-4}});
   const std::vector<test::OracleEdge> edges = test::oracleEdges(plate);

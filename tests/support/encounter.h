@@ -11,7 +11,8 @@
 
 namespace froude::test {
 
-/// One corner of a resolved path: where the disc's centre is after `time` seconds of the step.
+/// One corner of a resolved path: where the disc's centre is after `time` seconds of the step. Two of one time are a
+/// push.
 struct PathPoint {
   double time;
   Vec2 position;
@@ -46,8 +47,10 @@ ResolvedPath resolve(const Vec2& from, const Vec2& velocity, double dt, const Bo
     const double left = dt - elapsed;
     const SweepHit hit = sweep(elapsed, position, Vec2(position + left * path.velocity));
     if (hit.hit && hit.startedInside) path.startedInside = true;
-    position = hit.center;
     elapsed = hit.hit ? elapsed + hit.time * left : dt;
+    // The way that was swept, and then the push off the solid: one straight line would be neither.
+    if (hit.hit) path.corners.push_back({elapsed, Vec2(position + hit.time * left * path.velocity)});
+    position = hit.center;
     path.corners.push_back({elapsed, position});
     if (!hit.hit) break;
     if (++path.contacts == 8) {
@@ -89,15 +92,22 @@ inline int countLeaks(std::span<const OracleEdge> edges, const RigidMotion& moti
     const PathPoint& a = path.corners[i];
     const PathPoint& b = path.corners[i + 1];
     const double length = b.time - a.time;
+    if (length == 0.0) {
+      const double f = a.time / dt;
+      leaks += crosses(edges, inFrame(motion, dt, a.position, a.position, f),
+                       inFrame(motion, dt, b.position, b.position, f));
+      leaks += whereIs(edges, inFrame(motion, dt, b.position, b.position, f)) > 0;
+      continue;
+    }
     const auto world = [&](double t) {
-      const double f = length > 0.0 ? (t - a.time) / length : (t > a.time ? 1.0 : 0.0);
+      const double f = (t - a.time) / length;
       return t >= b.time ? b.position : Vec2(a.position + f * (b.position - a.position));
     };
     const auto at = [&](double t) {
       const Vec2 w = world(t);
       return inFrame(motion, dt, w, w, t / dt);
     };
-    const double speed = length > 0.0 ? ((b.position - a.position) / length - motion.velocity).norm() : 0.0;
+    const double speed = ((b.position - a.position) / length - motion.velocity).norm();
     const double shortest = motion.spin == 0.0 ? length : turn / std::abs(motion.spin);
     double begin = a.time;
     Vec2 from = at(begin);
