@@ -1,0 +1,61 @@
+// A convex polygon made ready for pair queries: the narrow phase's only shape. Knows no bodies.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <froude/base/api.h>
+#include <froude/base/transform.h>
+#include <froude/fields/polygon.h>
+
+namespace froude {
+
+/// Vertices counter-clockwise; edge k runs from vertex k to the next. Collinear runs are allowed. A shape that is a
+/// piece of a concave polygon knows which of its edges are cuts: nothing outside the polygon can touch those, and
+/// contacts against them would be ghosts at the seams.
+class FROUDE_API ConvexShape {
+ public:
+  /// Throws Error for fewer than three vertices, a vertex that is not finite, no area or a turn to the right.
+  explicit ConvexShape(std::vector<Vec2> vertices);
+  /// The convex pieces of a polygon, in the order of `convexPieces`, vertices relative to `origin` [m].
+  static std::vector<ConvexShape> piecesOf(const Polygon& polygon, const Vec2& origin = {0.0, 0.0});
+
+  std::uint32_t size() const { return static_cast<std::uint32_t>(vertices_.size()); }
+  std::span<const Vec2> vertices() const { return vertices_; }
+  /// Unit outward normals of the edges.
+  std::span<const Vec2> normals() const { return normals_; }
+  const Vec2& vertex(std::uint32_t k) const { return vertices_[k]; }
+  const Vec2& normal(std::uint32_t k) const { return normals_[k]; }
+  std::uint32_t next(std::uint32_t k) const { return k + 1 == size() ? 0 : k + 1; }
+  std::uint32_t previous(std::uint32_t k) const { return k == 0 ? size() - 1 : k - 1; }
+
+  const Vec2& centroid() const { return centroid_; }
+  /// Largest distance of a vertex from the centroid, least distance of an edge's line from it [m].
+  double outerRadius() const { return outerRadius_; }
+  double innerRadius() const { return innerRadius_; }
+  Box box(const Transform& pose) const;
+
+  /// True for a whole polygon: then all edges and directions can be touched.
+  bool isWhole() const { return cone_.empty(); }
+  /// Is the edge one of the polygon's outline, not a cut?
+  bool isOutline(std::uint32_t edge) const { return isWhole() || outline_[edge] != 0; }
+  /// Can something outside the polygon touch this vertex with `direction` (unit, pointing out of the shape)? True in
+  /// the cone between the normals of the polygon's own edges at that vertex; never at a reflex one.
+  bool allows(std::uint32_t vertex, const Vec2& direction) const;
+
+ private:
+  struct Cone {  // the polygon's own normals before and after the vertex; equal to nothing at a reflex vertex
+    Vec2 before, after;
+    bool open;
+  };
+  ConvexShape() = default;
+  void finish();
+
+  std::vector<Vec2> vertices_, normals_;
+  std::vector<std::uint8_t> outline_;  // by edge
+  std::vector<Cone> cone_;             // by vertex; empty for a whole polygon
+  Vec2 centroid_{0.0, 0.0};
+  double outerRadius_ = 0.0, innerRadius_ = 0.0;
+};
+
+}  // namespace froude
