@@ -62,6 +62,18 @@ struct ScriptPiece {
   TimeFunction spin;                  // [rad/s]; empty: 0
 };
 
+/// Turns a hinged body towards a speed.
+struct MotorDef {
+  double speed = 0.0;   // [rad/s]
+  double torque = 0.0;  // at most [N]
+};
+
+/// Holds a point of a free body where it is in the world.
+struct HingeDef {
+  Vec2 at{0, 0};  // at the start [m]
+  std::optional<MotorDef> motor;
+};
+
 struct BodyDef {
   std::string name;
   std::shared_ptr<const Polygon> shape;  // in the body's own frame [m]
@@ -77,6 +89,7 @@ struct BodyDef {
   double surfaceVelocity = 0.0;  // along the edge, counter-clockwise [m/s]
   std::uint32_t group = 1, collidesWith = ~0u;
   std::vector<ScriptPiece> script;  // in order; a scripted body without script keeps velocity and spin
+  std::optional<HingeDef> hinge;    // free bodies only
 };
 
 /// The model's keys. Left-out values are each model's documented defaults.
