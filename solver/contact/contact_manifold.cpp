@@ -101,12 +101,14 @@ struct Builder {
     manifold.normal = closest.normal;
     const std::uint32_t i = featureIndex(closest.a), j = featureIndex(closest.b);
     if (isEdge(closest.a)) {
-      if (isEdge(closest.b)) return clip<true>(i, j);
-      return build<true>(i, j);
+      isEdge(closest.b) ? clip<true>(i, j) : build<true>(i, j);
+    } else if (isEdge(closest.b)) {
+      build<false>(j, i);
     }
-    if (isEdge(closest.b)) return build<false>(j, i);
-    manifold.count = 1;
-    manifold.points[0] = {0.5 * (closest.onA + closest.onB), closest.distance, pointId(true, i, j | 0x8000u)};
+    // Two vertices; or features that touch to rounding, and miss each other by as much when they are clipped.
+    if (manifold.count > 0) return;
+    const std::uint32_t id = isEdge(closest.a) ? pointId(false, j, i) : pointId(true, i, isEdge(closest.b) ? j : ~j);
+    manifold.points[manifold.count++] = {0.5 * (closest.onA + closest.onB), closest.distance, id};
   }
 };
 

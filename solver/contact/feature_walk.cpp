@@ -17,6 +17,18 @@ constexpr double kCoincident = 1e-13;
 
 enum class Step { Found, Moved, Behind };
 
+// Does one of a vertex's two edges come nearer to where `d` leads?
+bool leaves(const Vec2& after, const Vec2& before, const Vec2& d, double tolerance) {
+  return cross(after, d) > tolerance || cross(before, d) < -tolerance;
+}
+
+// Which of them: the only one, or where both do, as at the tip of a needle, the one on the side that d leads out of.
+// Its other side comes nearer as well, but lies behind.
+bool isUpper(const Vec2& after, const Vec2& before, const Vec2& d) {
+  if (cross(after, d) <= 0.0) return false;
+  return cross(before, d) >= 0.0 || after.dot(d) >= before.dot(d);
+}
+
 struct Walker {
   const PairFrame& pair;
   PairCache& at;
@@ -31,15 +43,15 @@ struct Walker {
     const ConvexShape &a = pair.a, &b = pair.b;
     const Vec2 w = pair.arm(i, j);
     const Vec2 &afterA = a.normal(i), &beforeA = a.normal(a.previous(i));
-    if (cross(afterA, w) > 0.0) return at.a = edgeFeature(i), Step::Moved;
-    if (cross(beforeA, w) < 0.0) return at.a = edgeFeature(a.previous(i)), Step::Moved;
-    const Vec2 u = pair.pose.rotation.applyInverse(w);
+    if (leaves(afterA, beforeA, w, 0.0))
+      return at.a = edgeFeature(isUpper(afterA, beforeA, w) ? i : a.previous(i)), Step::Moved;
+    const Vec2 u = -pair.pose.rotation.applyInverse(w);
     const Vec2 &afterB = b.normal(j), &beforeB = b.normal(b.previous(j));
-    if (cross(afterB, u) < 0.0) return at.b = edgeFeature(j), Step::Moved;
-    if (cross(beforeB, u) > 0.0) return at.b = edgeFeature(b.previous(j)), Step::Moved;
+    if (leaves(afterB, beforeB, u, 0.0))
+      return at.b = edgeFeature(isUpper(afterB, beforeB, u) ? j : b.previous(j)), Step::Moved;
     const double distance = w.norm();
     // A vertex within a straight run passes the products from behind too, as does an arm of no length.
-    const bool before = std::max(afterA.dot(w), beforeA.dot(w)) > 0.0 && std::min(afterB.dot(u), beforeB.dot(u)) < 0.0;
+    const bool before = std::max(afterA.dot(w), beforeA.dot(w)) > 0.0 && std::max(afterB.dot(u), beforeB.dot(u)) > 0.0;
     if (!before || distance < kCoincident * pair.extent()) return Step::Behind;
     found.distance = distance;
     found.onA = a.vertex(i);
@@ -61,12 +73,14 @@ struct Walker {
     const double height = n.dot(arm);
     if (height < 0.0) return Step::Behind;
     const Vec2 facing = -pair.toOther<kOfA>(n);
-    const double after = cross(facing, other.normal(vertex));
-    const double before = cross(other.normal(other.previous(vertex)), facing);
-    if (after < -kParallel) return descend<kOfA>(edge, vertex, other.next(vertex));
-    if (before < -kParallel) return descend<kOfA>(edge, other.previous(vertex), other.previous(vertex));
-    if (after <= kParallel) return parallelOf<kOfA>(edge, vertex);
-    if (before <= kParallel) return parallelOf<kOfA>(edge, other.previous(vertex));
+    const std::uint32_t previous = other.previous(vertex);
+    const Vec2 &after = other.normal(vertex), &before = other.normal(previous);
+    if (leaves(after, before, facing, kParallel)) {
+      if (isUpper(after, before, facing)) return descend<kOfA>(edge, vertex, other.next(vertex));
+      return descend<kOfA>(edge, previous, previous);
+    }
+    if (cross(after, facing) >= -kParallel) return parallelOf<kOfA>(edge, vertex);
+    if (cross(before, facing) <= kParallel) return parallelOf<kOfA>(edge, previous);
     const Vec2 normal = kOfA ? n : facing;
     found.distance = height;
     found.normal = normal;
