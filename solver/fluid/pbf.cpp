@@ -350,8 +350,8 @@ void Pbf::judgeDensity(const StepContext& context, ParticlePool& pool, StepStats
   const auto density = pool.column(density_), pressure = pool.column(pressure_);
   const std::size_t n = pool.size();
   const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
-  // A film is as dense as its gap is narrow; that is no compression of the fluid.
-  walls_.forEachFilm([&](std::uint32_t i) { density[i] = std::min(density[i], 1.0f); });
+  // A film is as dense as its gap is narrow; that is no compression of the fluid. 0: when it comes out it is new.
+  walls_.forEachFilm([&](std::uint32_t i) { density[i] = 0.0f; });
   struct Part {
     double compression;
     float density, pressure;
