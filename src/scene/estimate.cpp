@@ -83,7 +83,9 @@ Estimate estimate(const Scene& scene) {
   result.speed = expectedSpeed(scene, true);
   for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
   result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
-  result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount()));
+  constexpr double kBodyBytes = 2000.0;  // its definition, motion, own field and contacts; shapes are shared
+  result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount())) +
+                 kBodyBytes * static_cast<double>(world.bodies.size());
   result.bounds = boundsOf(scene, gravity);
   result.substep = result.bounds.empty() ? scene.duration : std::min(result.bounds.front().dt, scene.duration);
   result.substeps = std::ceil(scene.duration / result.substep);
