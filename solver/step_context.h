@@ -26,6 +26,7 @@ class Gravity {
 };
 
 class LeakRecorder;
+class FreeBodies;
 
 /// Constant during a sub-step; handed to every stage.
 struct StepContext {
@@ -38,6 +39,8 @@ struct StepContext {
   std::optional<ColumnId<double>> carriedUntil = std::nullopt;
   /// Null where nobody listens: then bullets that overlapped nothing at the start are not checked for leaks.
   LeakRecorder* leaks = nullptr;
+  /// Null in worlds without free bodies.
+  FreeBodies* freeBodies = nullptr;
 };
 
 /// A particle met an obstacle.
@@ -76,8 +79,9 @@ class LeakRecorder {
 /// What particles gave to the bodies during a sub-step; index 0 is the domain, body i stands at i + 1.
 class ImpulseLedger {
  public:
-  void reset(std::size_t bodies) {
-    entries_.assign(bodies + 1, {});
+  void reset(const BodySet& bodies) {
+    entries_.assign(bodies.size() + 1, {});
+    for (std::size_t i = 0; i < bodies.size(); ++i) entries_[i + 1].within = bodies.isFree(i);
     work_ = 0.0;
   }
   /// impulse [kg·m/s per metre of depth] on the owner (−1: the domain) at the point, where its surface moves at
@@ -86,19 +90,22 @@ class ImpulseLedger {
     Entry& e = entries_[static_cast<std::size_t>(owner + 1)];
     e.impulse += impulse;
     e.moment += cross(at, impulse);
-    work_ -= impulse.dot(surfaceVelocity);
+    if (!e.within) work_ -= impulse.dot(surfaceVelocity);
   }
   /// Null where nobody listens.
   ContactRecorder* recorder() const { return recorder_; }
   void setRecorder(ContactRecorder* recorder) { recorder_ = recorder; }
-  /// Done by moving surfaces on particles [J/m].
+  /// Done by moving surfaces on particles, those of free bodies left out [J/m].
   double work() const { return work_; }
   const Vec2& impulse(int owner) const { return entries_[static_cast<std::size_t>(owner + 1)].impulse; }
   /// About the world's origin.
   double moment(int owner) const { return entries_[static_cast<std::size_t>(owner + 1)].moment; }
-  Vec2 total() const {
+  /// What left the particles and free bodies for all others.
+  Vec2 outside() const {
     Vec2 sum(0.0, 0.0);
-    for (const Entry& e : entries_) sum += e.impulse;
+    for (const Entry& e : entries_) {
+      if (!e.within) sum += e.impulse;
+    }
     return sum;
   }
 
@@ -106,6 +113,7 @@ class ImpulseLedger {
   struct Entry {
     Vec2 impulse{0.0, 0.0};
     double moment = 0.0;
+    bool within = false;  // a free body: part of what the accounts are about
   };
   std::vector<Entry> entries_;
   double work_ = 0.0;

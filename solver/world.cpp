@@ -31,7 +31,10 @@ void checkPeriod(const WorldDef& def) {
 }  // namespace
 
 World::Impl::Impl(const WorldDef& definition)
-    : def(definition), gravity(definition.gravity, definition.gravityField), bodies(definition.bodies) {
+    : def(definition),
+      gravity(definition.gravity, definition.gravityField),
+      bodies(definition.bodies),
+      rigid(definition.domain) {
   if (def.domain.box.empty() || !(def.domain.box.size().minCoeff() > 0.0)) {
     throw Error("domain.box is empty; give [xmin, ymin, xmax, ymax] with min < max");
   }
@@ -80,10 +83,7 @@ World::Impl::Impl(const WorldDef& definition)
   }
   obstacles = std::make_unique<Obstacles>(def.domain, bodies, reachOf(def));
   bodyStates.resize(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyMotion& m = bodies.motion(i);
-    bodyStates[i] = {m.transform(), m.angle, m.velocity, m.spin, {0.0, 0.0}, 0.0};
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) bodyStates[i] = stateOf(i);
   gravityScale = def.gravity.norm();
   if (!gravity.isConstant()) {  // the largest on a 5 × 5 sample of the domain at the start
     gravityScale = 0.0;
@@ -122,6 +122,13 @@ Totals World::totals(std::optional<Species> species) const {
   };
   if (!species || *species == Species::Fluid) add(impl_->fluid.get(), fluidMass());
   if (!species || *species == Species::Bullet) add(impl_->bullets.get(), bulletMass());
+  if (species) return all;
+  const Totals b = impl_->bodyTotals();
+  all.mass += b.mass;
+  all.kinetic += b.kinetic;
+  all.potential += b.potential;
+  all.momentum += b.momentum;
+  all.angular += b.angular;
   return all;
 }
 

@@ -21,13 +21,15 @@ namespace froude {
 struct BodyState {
   Transform transform;
   double angle = 0.0;   // [rad], not wrapped
-  Vec2 velocity{0, 0};  // of the origin [m/s]
+  Vec2 velocity{0, 0};  // of the origin, of a free body its centre of mass [m/s]
   double spin = 0.0;    // [rad/s]
-  Vec2 force{0, 0};     // of particles and fluid on the body, over the last sub-step [N/m]
+  Vec2 force{0, 0};     // of particles, fluid, other bodies, walls and hinge, over the last sub-step [N/m]
   double torque = 0.0;  // about the centre of mass [N]
+  bool asleep = false;  // a free body that rests, with all that it touches
 };
 
-/// Sums over particles (one species or all), at the present time.
+/// Sums over particles of one species, or over all particles and free bodies, at the present time. Count and largest
+/// speed are of particles alone.
 struct Totals {
   std::size_t count = 0;
   double mass = 0.0;       // [kg/m]
@@ -104,7 +106,8 @@ class FROUDE_API World {
   /// Puts a body elsewhere at once, a fixed one too; a scripted one goes on from there. Crushes and costs as
   /// `createBody`. To push particles away instead, give a scripted body a velocity.
   void placeBody(BodyId id, const Vec2& position, double angle);
-  /// Of a scripted body without script, from the next sub-step on [m/s, of its origin; rad/s]. Error for others.
+  /// Of a scripted body without script, from the next sub-step on [m/s, of its origin; rad/s], or of a free body (its
+  /// centre of mass), which wakes. Error for others.
   void setBodyVelocity(BodyId id, const Vec2& velocity, double spin);
   /// The velocity and spin that bring it to this pose in `duration` [s] > 0; it keeps them until told otherwise.
   void steerBody(BodyId id, const Vec2& position, double angle, double duration);

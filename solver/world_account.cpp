@@ -30,6 +30,22 @@ Totals World::Impl::totalsOf(const ParticlePool& pool, double mass) const {
   return t;
 }
 
+Totals World::Impl::bodyTotals() const {
+  Totals t;
+  for (std::size_t i = 0; bodies.anyFree() && i < bodies.size(); ++i) {
+    if (!bodies.isFree(i)) continue;
+    const MassData& mass = bodies.mass(i);
+    const FreeState& f = bodies.freeState(i);
+    const Vec2& center = bodies.motion(i).position;
+    t.mass += mass.mass;
+    t.kinetic += 0.5 * (mass.mass * f.velocity.squaredNorm() + mass.inertia * f.spin * f.spin);
+    t.potential += mass.mass * potentialOf(center);
+    t.momentum += mass.mass * f.velocity;
+    t.angular += mass.inertia * f.spin + mass.mass * cross(center, f.velocity);
+  }
+  return t;
+}
+
 Balance World::Impl::balance() const {
   Balance b;
   auto add = [&](const ParticlePool& pool, double mass) {
@@ -42,6 +58,11 @@ Balance World::Impl::balance() const {
   };
   if (fluid != nullptr) add(*fluid, fluidModel->particleMass());
   if (bullets != nullptr) add(*bullets, ballistic->mass());
+  const Totals free = bodyTotals();
+  b.kinetic += free.kinetic;
+  b.potential += free.potential;
+  b.momentum += free.momentum;
+  b.mass += free.mass;
   b.finite = std::isfinite(b.kinetic + b.potential + b.momentum.x() + b.momentum.y());
   return b;
 }
@@ -67,7 +88,7 @@ double World::Impl::energyScale() const {
 }
 
 double World::Impl::outsideWork(const StepStats& stats, const Balance& after, double dt) const {
-  double work = stats.gravityWork + impulses.work();
+  double work = stats.gravityWork + impulses.work() + rigidStats.work;
   if (gravity.isConstant()) {
     if (def.domain.periodicX) work += gravity.constant().x() * after.momentum.x() * dt;
     if (def.domain.periodicY) work += gravity.constant().y() * after.momentum.y() * dt;
@@ -119,7 +140,7 @@ void World::Impl::account(const StepStats& stats, double dt) {
   ledger.crushed += stats.crushed;
   ledger.maxDensityError = std::max(ledger.maxDensityError, stats.maxCompression);
   ledger.densityErrorTime += stats.meanCompression * dt;
-  ledger.impulse += stats.gravityImpulse - impulses.total();
+  ledger.impulse += stats.gravityImpulse + rigidStats.impulse - impulses.outside();
   ledger.work += outsideWork(stats, after, dt);
   ledger.maxKinetic = std::max(ledger.maxKinetic, after.kinetic);
   ledger.maxSpeed = std::max(ledger.maxSpeed, after.maxSpeed);

@@ -34,13 +34,13 @@ void archiveBalance(Archive& a, Balance& b) {
 }
 
 void archiveBodyStates(Archive& a, std::vector<BodyState>& states, AlignedArray<double>& flat) {
-  constexpr std::size_t kFields = 11;
+  constexpr std::size_t kFields = 12;
   flat.resize(kFields * states.size());
   double* v = flat.data();
   for (const BodyState& s : states) {
     for (const double value :
          {s.transform.position.x(), s.transform.position.y(), s.transform.rotation.c, s.transform.rotation.s, s.angle,
-          s.velocity.x(), s.velocity.y(), s.spin, s.force.x(), s.force.y(), s.torque}) {
+          s.velocity.x(), s.velocity.y(), s.spin, s.force.x(), s.force.y(), s.torque, s.asleep ? 1.0 : 0.0}) {
       *v++ = value;
     }
   }
@@ -48,7 +48,7 @@ void archiveBodyStates(Archive& a, std::vector<BodyState>& states, AlignedArray<
   if (!a.loading()) return;
   v = flat.data();
   for (BodyState& s : states) {
-    s = {{{v[0], v[1]}, {v[2], v[3]}}, v[4], {v[5], v[6]}, v[7], {v[8], v[9]}, v[10]};
+    s = {{{v[0], v[1]}, {v[2], v[3]}}, v[4], {v[5], v[6]}, v[7], {v[8], v[9]}, v[10], v[11] != 0.0};
     v += kFields;
   }
 }
@@ -73,6 +73,7 @@ void World::Impl::archive(Archive& a) {
     bodies.archive(a);
     if (a.loading()) bodyStates.resize(bodies.size());
     archiveBodyStates(a, bodyStates, flat);
+    if (bodies.anyFree()) rigid.archive(bodies, a);
   });
   if (fluid != nullptr) section(a, "fluid", [&] { fluid->archive(a); });
   if (bullets != nullptr) section(a, "bullets", [&] { bullets->archive(a); });
@@ -82,7 +83,7 @@ void World::Impl::archive(Archive& a) {
   if (!sinks.empty()) section(a, "sinks", [&] { sinks.archive(a); });
   if (!a.loading()) return;
   obstacles->rebuild(bodies);
-  obstaclesStale = false;
+  obstaclesStale = obstaclesBehind = false;
   edited = true;  // measured anew before the next sub-step, which finds no difference unless the caller made one
 }
 

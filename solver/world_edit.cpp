@@ -46,8 +46,12 @@ void World::Impl::bodiesChanged() {
 
 // Rebuilt when somebody looks, so that a hundred bodies are created at the price of one field.
 const Obstacles& World::Impl::solids() const {
-  if (obstaclesStale) obstacles->rebuild(bodies);
-  obstaclesStale = false;
+  if (obstaclesStale) {
+    obstacles->rebuild(bodies);
+  } else if (obstaclesBehind) {
+    obstacles->beginStep(bodies, 0.0, 0.0);
+  }
+  obstaclesStale = obstaclesBehind = false;
   return *obstacles;
 }
 
@@ -58,14 +62,15 @@ void World::Impl::crushUnder(std::size_t body) {
   auto crush = [&](ParticlePool& pool, Species species, double radius) {
     const CollisionFilter filter = filterOf(species);
     if (!filter.accepts(shape.group, shape.collidesWith)) return;
-    const Box local = shape.shape->bounds().grown(radius);
+    const Polygon& polygon = *bodies.shape(body);
+    const Box local = polygon.bounds().grown(radius);
     const auto x = pool.x(), y = pool.y();
     parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         visitImages(def.domain, [&](const Vec2& shift) {
           const Vec2 p = pose.toLocal(Vec2(x[i], y[i]) + shift);
           if (!local.contains(p)) return false;
-          const bool under = shape.shape->contains(p) || boundaryDistance(*shape.shape, p) < radius;
+          const bool under = polygon.contains(p) || boundaryDistance(polygon, p) < radius;
           if (under) pool.kill(static_cast<std::uint32_t>(i));
           return under;
         });
@@ -80,8 +85,8 @@ void World::Impl::crushUnder(std::size_t body) {
 BodyId World::createBody(const BodyDef& def) {
   const BodyId id = impl_->bodies.add(def);
   const std::size_t i = impl_->bodies.size() - 1;
-  const BodyMotion& m = impl_->bodies.motion(i);
-  impl_->bodyStates.push_back({m.transform(), m.angle, m.velocity, m.spin, {0.0, 0.0}, 0.0});
+  impl_->bodyStates.push_back(impl_->stateOf(i));
+  impl_->edited = impl_->edited || def.motion == Motion::Free;
   impl_->bodiesChanged();
   impl_->crushUnder(i);
   return id;
@@ -89,6 +94,7 @@ BodyId World::createBody(const BodyDef& def) {
 
 void World::destroyBody(BodyId id) {
   const std::size_t i = impl_->requireBody(id);
+  impl_->edited = impl_->edited || impl_->bodies.isFree(i);
   impl_->bodies.remove(i);
   impl_->bodyStates.erase(impl_->bodyStates.begin() + static_cast<std::ptrdiff_t>(i));
   impl_->bodiesChanged();
@@ -98,6 +104,7 @@ void World::placeBody(BodyId id, const Vec2& position, double angle) {
   const std::size_t i = impl_->requireBody(id);
   requireFinite(position, angle, "the new pose");
   impl_->bodies.place(i, position, angle);
+  impl_->edited = impl_->edited || impl_->bodies.isFree(i);
   impl_->bodyStates[i].transform = Transform::of(position, angle);
   impl_->bodyStates[i].angle = angle;
   impl_->bodiesChanged();
@@ -108,9 +115,11 @@ void World::setBodyVelocity(BodyId id, const Vec2& velocity, double spin) {
   const std::size_t i = impl_->requireBody(id);
   requireFinite(velocity, spin, "the new velocity");
   const BodyDef& def = impl_->bodies.definition(i);
-  if (def.motion != Motion::Scripted) {
-    throw Error("body '" + def.name + "' is fixed and has no velocity; make it scripted, or place it elsewhere");
+  if (def.motion == Motion::Fixed) {
+    throw Error("body '" + def.name +
+                "' is fixed and has no velocity; make it scripted or free, or place it elsewhere");
   }
+  impl_->edited = impl_->edited || def.motion == Motion::Free;
   if (!def.script.empty()) throw Error("body '" + def.name + "' gets its velocity from its script; leave that empty");
   impl_->bodies.setVelocity(i, velocity, spin);
   impl_->bodyStates[i].velocity = velocity;
@@ -119,8 +128,10 @@ void World::setBodyVelocity(BodyId id, const Vec2& velocity, double spin) {
 
 void World::steerBody(BodyId id, const Vec2& position, double angle, double duration) {
   if (!(duration > 0.0)) throw Error("the duration of a body's way must be positive");
-  const BodyMotion& m = impl_->bodies.motion(impl_->requireBody(id));
-  setBodyVelocity(id, (position - m.position) / duration, (angle - m.angle) / duration);
+  const std::size_t i = impl_->requireBody(id);
+  const BodyMotion& m = impl_->bodies.motion(i);
+  const Vec2 wanted = Transform::of(position, angle).toWorld(impl_->bodies.frameOrigin(i));
+  setBodyVelocity(id, (wanted - m.position) / duration, (angle - m.angle) / duration);
 }
 
 std::size_t World::bodyCount() const { return impl_->bodies.size(); }

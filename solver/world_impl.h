@@ -9,10 +9,12 @@
 #include <froude/particles/emitter.h>
 #include <froude/particles/sink.h>
 #include <froude/solver/bullet/ballistic.h>
+#include <froude/solver/coupling/free_bodies.h>
 #include <froude/solver/event_log.h>
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/fluid_query.h>
 #include <froude/solver/rigid/body_set.h>
+#include <froude/solver/rigid/rigid_solver.h>
 #include <froude/solver/world.h>
 
 namespace froude {
@@ -46,6 +48,8 @@ struct World::Impl {
   StepBound chooseStep(double maxDt) const;
   void quarantine();
   void advance(double dt, StepStats& stats);
+  void moveBodies(double dt);
+  void pushBodies(double dt);
   void explainLeaks(double dt);
   void judge(StepStats& stats, double dt);
   void retire();
@@ -54,8 +58,10 @@ struct World::Impl {
   void findMouth(const EmitterDef& nozzle, double dt);
   bool hasRoom(const Vec2& at);
   void publishBodies(double dt);
+  BodyState stateOf(std::size_t body) const;
   void account(const StepStats& stats, double dt);
   bool needsUndo() const { return fluidModel != nullptr; }
+  bool anyParticles() const { return fluid != nullptr || bullets != nullptr; }
   void archive(Archive& a);
 
   // The caller's force (world_force.cpp).
@@ -83,6 +89,7 @@ struct World::Impl {
   double outsideWork(const StepStats& stats, const Balance& after, double dt) const;
   Vec2 fastestParticle() const;
   Totals totalsOf(const ParticlePool& pool, double mass) const;
+  Totals bodyTotals() const;
   Balance balance() const;
   double potentialOf(const Vec2& x) const;  // per mass [J/kg]
   void remove(ParticlePool& pool, double mass, std::uint64_t& counter);
@@ -98,7 +105,11 @@ struct World::Impl {
   std::unique_ptr<FluidModel> fluidModel;
   std::unique_ptr<Ballistic> ballistic;
   std::unique_ptr<Obstacles> obstacles;
-  mutable bool obstaclesStale = false;  // bodies came, went or were put elsewhere
+  RigidSolver rigid;
+  RigidStats rigidStats;                 // of the present sub-step
+  std::vector<Wrench> pressureBefore;    // impulse of the pressure that bodies were moved with, by body
+  mutable bool obstaclesStale = false;   // bodies came, went or were put elsewhere
+  mutable bool obstaclesBehind = false;  // bodies have moved where no particle asks for them
   std::vector<Emitter> emitters;
   SinkSet sinks;
   MemorySnapshot snapshot;

@@ -93,7 +93,7 @@ void World::Impl::explainLeaks(double dt) {
     leak.depth = kInfinity;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       if (!filter.accepts(bodies.definition(i).group, bodies.definition(i).collidesWith)) continue;
-      const Polygon& shape = *bodies.definition(i).shape;
+      const Polygon& shape = *bodies.shape(i);
       const BodyMotion& m = bodies.motion(i);
       const Transform pose = Transform::of(m.position + dt * m.velocity, m.angle + dt * m.spin);
       visitImages(def.domain, [&](const Vec2& shift) {

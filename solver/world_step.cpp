@@ -131,12 +131,22 @@ void World::Impl::quarantine() {
 }
 
 void World::Impl::advance(double dt, StepStats& stats) {
-  bodies.beginStep(time, dt);
+  moveBodies(dt);
   const double reach = (fluidModel != nullptr ? fluidModel->supportRadius() : 0.0) +
                        (def.bullet ? def.bullet->radius : 0.0) + present.maxSpeed * dt + dt * dt * accelerationScale();
-  obstacles->beginStep(bodies, dt, 2.0 * reach);
-  impulses.reset(bodies.size());
-  const StepContext context{time, dt, gravity, *obstacles, def.simd, fluidCarried, events.leakRecorder()};
+  if (anyParticles()) obstacles->beginStep(bodies, dt, 2.0 * reach);
+  obstaclesBehind = !anyParticles();
+  impulses.reset(bodies);
+  FreeBodies freeBodies(bodies, *obstacles);
+  freeBodies.begin(dt, 2.0 * reach);
+  const StepContext context{time,
+                            dt,
+                            gravity,
+                            *obstacles,
+                            def.simd,
+                            fluidCarried,
+                            events.leakRecorder(),
+                            bodies.anyFree() ? &freeBodies : nullptr};
   pushByForce(dt, stats);
   if (fluidModel != nullptr) {
     impulses.setRecorder(events.listenTo(Species::Fluid, *fluid, bodies, time, dt));
@@ -150,23 +160,70 @@ void World::Impl::advance(double dt, StepStats& stats) {
   }
   explainLeaks(dt);
   finishForce(dt, stats);
+  pushBodies(dt);
   publishBodies(dt);
-  bodies.finishStep(dt);
   time += dt;
 }
 
-void World::Impl::publishBodies(double dt) {
+// With the pressure of the sub-step before; particles then meet the bodies where that brings them.
+void World::Impl::moveBodies(double dt) {
+  bodies.beginStep(time, dt);
+  rigidStats = {};
+  if (!bodies.anyFree()) return;
+  const RigidStep step{dt, [&](const Vec2& x) { return gravity.at(x, time); }, gravityScale};
+  pressureBefore.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyMotion& m = bodies.motion(i);
-    BodyState& state = bodyStates[i];
+    FreeState& f = bodies.freeState(i);
+    pressureBefore[i] = {dt * f.pressure.x(), dt * f.pressure.y(), dt * f.pressureTorque};
+  }
+  rigid.advance(step, bodies, rigidStats);
+}
+
+// What particles gave, less what the bodies have of it already.
+void World::Impl::pushBodies(double dt) {
+  for (std::size_t i = 0; bodies.anyFree() && i < bodies.size(); ++i) {
+    if (!bodies.isFree(i)) continue;
     const auto owner = static_cast<int>(i);
-    state.velocity = m.velocity;
-    state.spin = m.spin;
+    const BodyMotion& m = bodies.motion(i);
+    const Vec2 center = m.position + dt * m.velocity;
+    const Vec2& impulse = impulses.impulse(owner);
+    const Wrench& had = pressureBefore[i];
+    giveImpulse(bodies, i,
+                {impulse.x() - had[0], impulse.y() - had[1], impulses.moment(owner) - cross(center, impulse) - had[2]});
+  }
+}
+
+// The body as it stands between sub-steps.
+BodyState World::Impl::stateOf(std::size_t i) const {
+  const BodyMotion& m = bodies.motion(i);
+  const bool free = bodies.isFree(i);
+  const FreeState& f = bodies.freeState(i);
+  BodyState state;
+  state.angle = m.angle;
+  state.transform = m.transform();
+  if (free) state.transform.position = state.transform.toWorld(-bodies.frameOrigin(i));
+  state.velocity = free ? f.velocity : m.velocity;
+  state.spin = free ? f.spin : m.spin;
+  state.asleep = f.asleep != 0.0;
+  return state;
+}
+
+void World::Impl::publishBodies(double dt) {
+  const bool anyFree = bodies.anyFree();
+  bodies.finishStep(dt);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto owner = static_cast<int>(i);
+    const Vec2 center =
+        bodies.motion(i).transform().toWorld(bodies.definition(i).shape->centroid() - bodies.frameOrigin(i));
+    BodyState state = stateOf(i);
     state.force = impulses.impulse(owner) / dt;
-    const Vec2 center = m.transform().toWorld(bodies.definition(i).shape->centroid());
     state.torque = (impulses.moment(owner) - cross(center, impulses.impulse(owner))) / dt;
-    state.angle = m.angle + dt * m.spin;
-    state.transform = Transform::of(m.position + dt * m.velocity, state.angle);
+    if (anyFree) {
+      const BodyImpulse& felt = rigid.felt(i);
+      state.force += felt.impulse / dt;
+      state.torque += felt.moment / dt;
+    }
+    bodyStates[i] = state;
   }
 }
 

@@ -46,8 +46,8 @@ void Obstacles::rebuild(const BodySet& bodies) {
     const auto number = static_cast<std::int32_t>(i);
     if (bodies.moves(i)) {
       moving_.push_back({number,
-                         def.shape,
-                         fieldOf(def.shape),
+                         bodies.shape(i),
+                         fieldOf(bodies.shape(i)),
                          {},
                          motion.transform(),
                          {},

@@ -76,6 +76,10 @@ void writeBodyRecord(const BodyDef& d, std::vector<std::byte>* bytes) {
                                 std::uint64_t{d.collidesWith}, std::uint64_t{d.script.size()}}) {
     out.count(v);
   }
+  out.count(d.hinge ? (d.hinge->motor ? 2 : 1) : 0);
+  if (!d.hinge) return;
+  out.vector(d.hinge->at);
+  if (d.hinge->motor) out.vector({d.hinge->motor->speed, d.hinge->motor->torque});
 }
 
 BodyRecord readBodyRecord(std::span<const std::byte> bytes) {
@@ -102,6 +106,13 @@ BodyRecord readBodyRecord(std::span<const std::byte> bytes) {
   d.group = static_cast<std::uint32_t>(in.count());
   d.collidesWith = static_cast<std::uint32_t>(in.count());
   record.scriptPieces = static_cast<std::size_t>(in.count());
+  if (const std::uint64_t hinge = in.count(); hinge > 0) {
+    d.hinge = HingeDef{in.vector(), std::nullopt};
+    if (hinge > 1) {
+      const Vec2 motor = in.vector();
+      d.hinge->motor = MotorDef{motor.x(), motor.y()};
+    }
+  }
   record.size = in.at();
   return record;
 }

@@ -1,0 +1,273 @@
+#include <froude/solver/rigid/contact_list.h>
+
+#include <algorithm>
+
+namespace froude {
+namespace {
+
+constexpr double kSkin = 0.1;        // of a piece's outer radius: how far it may move before pairs are looked for anew
+constexpr double kStepsAhead = 3.0;  // and this many steps of its present travel
+constexpr double kLargestMargin =
+    0.5;  // of the thinner piece: what comes from farther is a matter of continuous motion
+constexpr std::size_t kBlock = 64;
+constexpr std::uint64_t kWallKey = std::uint64_t{1} << 62;
+constexpr int kPieceBits = 24, kSlotBits = 30;
+
+bool contains(const Box& outer, const Box& inner) {
+  return outer.min.x() <= inner.min.x() && outer.min.y() <= inner.min.y() && outer.max.x() >= inner.max.x() &&
+         outer.max.y() >= inner.max.y();
+}
+
+// The closed sides as boxes as deep as the domain is wide.
+std::vector<ConvexShape> wallShapes(const DomainDef& domain) {
+  const Box& in = domain.box;
+  const double depth = in.size().maxCoeff();
+  const Box out = in.grown(depth);
+  const std::array<bool, 4> closed{domain.closed[0] && !domain.periodicX, domain.closed[1] && !domain.periodicX,
+                                   domain.closed[2] && !domain.periodicY, domain.closed[3] && !domain.periodicY};
+  const std::array<Box, 4> boxes{Box{out.min, {in.min.x(), out.max.y()}}, Box{{in.max.x(), out.min.y()}, out.max},
+                                 Box{out.min, {out.max.x(), in.min.y()}}, Box{{out.min.x(), in.max.y()}, out.max}};
+  std::vector<ConvexShape> walls;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Box& b = boxes[k];
+    if (!closed[k]) continue;
+    walls.emplace_back(std::vector<Vec2>{b.min, {b.max.x(), b.min.y()}, b.max, {b.min.x(), b.max.y()}});
+  }
+  return walls;
+}
+
+}  // namespace
+
+bool ContactList::mayTouch(const BodySet& bodies, std::uint32_t a, std::uint32_t b) const {
+  if (a == b) return false;
+  const auto n = static_cast<std::uint32_t>(bodies.size());
+  if (a == n || b == n) return bodies.isFree(a == n ? b : a);
+  if (!bodies.isFree(a) && !bodies.isFree(b)) return false;
+  const BodyDef& da = bodies.definition(a);
+  const BodyDef& db = bodies.definition(b);
+  return CollisionFilter{da.group, da.collidesWith}.accepts(db.group, db.collidesWith);
+}
+
+void ContactList::rebuild(const DomainDef& domain, const BodySet& bodies) {
+  std::vector<std::unique_ptr<Shape>> known = std::move(shapes_);
+  shapes_.clear();
+  auto shapeOf = [&](const std::shared_ptr<const Polygon>& polygon) -> const Shape& {
+    if (!shapes_.empty() && shapes_.back()->polygon == polygon) return *shapes_.back();
+    for (const auto& s : shapes_) {
+      if (s->polygon == polygon) return *s;
+    }
+    for (auto& s : known) {
+      if (s == nullptr || s->polygon != polygon) continue;
+      shapes_.push_back(std::move(s));
+      return *shapes_.back();
+    }
+    shapes_.push_back(std::make_unique<Shape>(Shape{polygon, ConvexShape::piecesOf(*polygon)}));
+    return *shapes_.back();
+  };
+  if (walls_ == nullptr) walls_ = std::make_unique<Shape>(Shape{nullptr, wallShapes(domain)});
+  std::vector<std::uint64_t> keys;
+  for (const Proxy& p : proxies_) keys.push_back(p.key);
+  proxies_.clear();
+  firstProxy_.assign(1, 0);
+  thickness_.clear();
+  auto addPieces = [&](const Shape& shape, std::uint32_t body, std::uint64_t key) {
+    double thin = kInfinity;
+    for (const ConvexShape& piece : shape.pieces) {
+      proxies_.push_back({&piece, body, key++});
+      thin = std::min(thin, piece.innerRadius());
+    }
+    firstProxy_.push_back(static_cast<std::uint32_t>(proxies_.size()));
+    thickness_.push_back(thin);
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyId id = bodies.id(i);
+    // A new body in an old slot is another one: the generation tells them apart.
+    const std::uint64_t key =
+        (std::uint64_t{id.slot} << kPieceBits) + (std::uint64_t{id.generation & 0xffu} << (kPieceBits + kSlotBits));
+    addPieces(shapeOf(bodies.shape(i)), static_cast<std::uint32_t>(i), key);
+  }
+  addPieces(*walls_, static_cast<std::uint32_t>(bodies.size()), kWallKey);
+  // Contacts are found again by their keys, so numbers are turned into keys' new numbers where they are still there.
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers;
+  for (std::uint32_t p = 0; p < proxies_.size(); ++p) numbers.push_back({proxies_[p].key, p});
+  std::sort(numbers.begin(), numbers.end());
+  auto renumber = [&](std::uint32_t& proxy, std::uint32_t& body) {
+    const auto at = std::lower_bound(numbers.begin(), numbers.end(), std::pair(keys[proxy], std::uint32_t{0}));
+    if (at == numbers.end() || at->first != keys[proxy]) return false;
+    proxy = at->second;
+    body = proxies_[proxy].body;
+    return true;
+  };
+  std::erase_if(contacts_, [&](Contact& c) { return !renumber(c.a, c.bodyA) || !renumber(c.b, c.bodyB); });
+  reach_.resize(proxies_.size());
+  fat_.resize(proxies_.size());
+  order_.clear();
+  stale_ = true;
+}
+
+void ContactList::findReach(const BodyPoses& poses, Crew& crew) {
+  crew.stage(proxies_.size(), 4 * kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Proxy& proxy = proxies_[p];
+      reach_[p] = proxy.shape->box(poses.pose[proxy.body]).grown(poses.travel[proxy.body]);
+    }
+  });
+}
+
+bool ContactList::leftItsBox() const {
+  for (std::size_t p = 0; p < proxies_.size(); ++p) {
+    if (!contains(fat_[p], reach_[p])) return true;
+  }
+  return false;
+}
+
+// Insertion: from one time to the next the order hardly changes.
+void ContactList::sortAlongX() {
+  if (order_.size() != proxies_.size()) {
+    order_.resize(proxies_.size());
+    for (std::uint32_t p = 0; p < order_.size(); ++p) order_[p] = p;
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t p, std::uint32_t q) {
+      return fat_[p].min.x() < fat_[q].min.x() || (fat_[p].min.x() == fat_[q].min.x() && p < q);
+    });
+    return;
+  }
+  for (std::size_t k = 1; k < order_.size(); ++k) {
+    const std::uint32_t p = order_[k];
+    const double x = fat_[p].min.x();
+    std::size_t at = k;
+    for (; at > 0 && fat_[order_[at - 1]].min.x() > x; --at) order_[at] = order_[at - 1];
+    order_[at] = p;
+  }
+}
+
+// Sort and sweep along x. A wall or a floor, which overlaps all, costs one pass over all.
+void ContactList::pairAnew(const BodySet& bodies) {
+  sortAlongX();
+  candidates_.clear();
+  std::vector<Box> sorted;
+  sorted.reserve(order_.size());
+  for (const std::uint32_t p : order_) sorted.push_back(fat_[p]);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const Box& box = sorted[i];
+    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].min.x() <= box.max.x(); ++j) {
+      if (sorted[j].min.y() > box.max.y() || sorted[j].max.y() < box.min.y()) continue;
+      std::uint32_t a = order_[i], b = order_[j];
+      if (!mayTouch(bodies, proxies_[a].body, proxies_[b].body)) continue;
+      if (proxies_[a].key > proxies_[b].key) std::swap(a, b);
+      candidates_.push_back({proxies_[a].key, proxies_[b].key, a, b});
+    }
+  }
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& p, const Candidate& q) {
+    return p.keyA < q.keyA || (p.keyA == q.keyA && p.keyB < q.keyB);
+  });
+  before_.swap(contacts_);
+  contacts_.clear();
+  std::size_t old = 0;
+  for (const Candidate& c : candidates_) {
+    auto isBefore = [&](const Contact& k) {
+      const std::uint64_t keyA = proxies_[k.a].key, keyB = proxies_[k.b].key;
+      return keyA < c.keyA || (keyA == c.keyA && keyB < c.keyB);
+    };
+    while (old < before_.size() && isBefore(before_[old])) ++old;
+    if (old < before_.size() && before_[old].a == c.a && before_[old].b == c.b) {
+      contacts_.push_back(before_[old]);
+      continue;
+    }
+    Contact contact;
+    contact.a = c.a, contact.b = c.b;
+    contact.bodyA = proxies_[c.a].body, contact.bodyB = proxies_[c.b].body;
+    contacts_.push_back(contact);
+  }
+}
+
+void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
+  if (poses.still[contact.bodyA] != 0 && poses.still[contact.bodyB] != 0) return;
+  const Contact last = contact;
+  contact.count = 0;
+  if (!reach_[contact.a].overlaps(reach_[contact.b])) return;
+  const ConvexShape& a = shape(contact.a);
+  const ConvexShape& b = shape(contact.b);
+  const Transform& frame = poses.pose[contact.bodyA];
+  const double margin = std::min(poses.travel[contact.bodyA] + poses.travel[contact.bodyB],
+                                 kLargestMargin * std::min(a.innerRadius(), b.innerRadius()));
+  const ContactManifold m = contactManifold(a, b, poseIn(frame, poses.pose[contact.bodyB]), margin, contact.cache);
+  contact.count = m.count;
+  contact.normal = frame.rotation.apply(m.normal);
+  for (std::uint32_t k = 0; k < m.count; ++k) {
+    ContactPoint& point = contact.points[k];
+    point = {frame.toWorld(m.points[k].at), m.points[k].separation, 0.0, 0.0, m.points[k].id};
+    for (std::uint32_t old = 0; old < last.count; ++old) {
+      if (last.points[old].id != point.id) continue;
+      point.normalImpulse = last.points[old].normalImpulse;
+      point.tangentImpulse = last.points[old].tangentImpulse;
+    }
+  }
+}
+
+void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& crew) {
+  findReach(poses, crew);
+  if (stale_ || leftItsBox()) {
+    for (std::size_t p = 0; p < proxies_.size(); ++p) {
+      const Proxy& proxy = proxies_[p];
+      const bool wall = proxy.body == bodies.size();
+      fat_[p] = wall ? reach_[p]
+                     : reach_[p].grown(kSkin * proxy.shape->outerRadius() + kStepsAhead * poses.travel[proxy.body]);
+    }
+    pairAnew(bodies);
+    stale_ = false;
+  }
+  crew.stage(contacts_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) collide(contacts_[k], poses);
+  });
+}
+
+void ContactList::archive(Archive& a) {
+  // Pairs as numbers of proxies, which follow from the bodies; the rest value by value, as padding has no defined bits.
+  std::vector<std::uint32_t> whole;
+  std::vector<double> real;
+  const std::size_t n = a.count("contacts", contacts_.size());
+  if (a.loading()) contacts_.assign(n, {});
+  whole.reserve(7 * n);
+  real.reserve(12 * n);
+  for (const Contact& c : contacts_) {
+    for (const std::uint32_t v : {c.a, c.b, c.cache.a, c.cache.b, c.count, c.points[0].id, c.points[1].id}) {
+      whole.push_back(v);
+    }
+    for (const ContactPoint& p : c.points) {
+      for (const double v : {p.at.x(), p.at.y(), p.separation, p.normalImpulse, p.tangentImpulse}) real.push_back(v);
+    }
+    real.push_back(c.normal.x()), real.push_back(c.normal.y());
+  }
+  a.bytes("pairs", whole.data(), sizeof(std::uint32_t), whole.size());
+  a.bytes("points", real.data(), sizeof(double), real.size());
+  std::vector<double> boxes;
+  for (const Box& b : fat_) {
+    for (const double v : {b.min.x(), b.min.y(), b.max.x(), b.max.y()}) boxes.push_back(v);
+  }
+  a.bytes("boxes", boxes.data(), sizeof(double), boxes.size());
+  std::uint8_t stale = stale_ ? 1 : 0;
+  a.value("stale", stale);
+  if (!a.loading()) return;
+  stale_ = stale != 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    Contact& c = contacts_[k];
+    const std::uint32_t* w = whole.data() + 7 * k;
+    if (w[0] >= proxies_.size() || w[1] >= proxies_.size()) throw Error("saved contacts: the state is damaged");
+    c.a = w[0], c.b = w[1], c.cache.a = w[2], c.cache.b = w[3], c.count = w[4];
+    c.points[0].id = w[5], c.points[1].id = w[6];
+    c.bodyA = proxies_[c.a].body, c.bodyB = proxies_[c.b].body;
+    const double* r = real.data() + 12 * k;
+    for (ContactPoint& p : c.points) {
+      p.at = {r[0], r[1]}, p.separation = r[2], p.normalImpulse = r[3], p.tangentImpulse = r[4];
+      r += 5;
+    }
+    c.normal = {r[0], r[1]};
+  }
+  for (std::size_t p = 0; p < fat_.size(); ++p) {
+    const double* b = boxes.data() + 4 * p;
+    fat_[p] = {{b[0], b[1]}, {b[2], b[3]}};
+  }
+  order_.clear();
+}
+
+}  // namespace froude

@@ -1,0 +1,102 @@
+// The pairs of convex pieces that may touch, and what each pair remembers from step to step.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <froude/base/crew.h>
+#include <froude/fields/world_field.h>
+#include <froude/solver/contact/contact_manifold.h>
+#include <froude/solver/rigid/body_set.h>
+
+namespace froude {
+
+/// A convex piece of a body, or a wall of the domain.
+struct Proxy {
+  const ConvexShape* shape = nullptr;
+  std::uint32_t body = 0;  // index; BodySet::size() for the domain
+  std::uint64_t key = 0;   // by slot of the body and piece: lasts while bodies come and go; walls come last
+};
+
+/// One point of a contact and the impulses that it had in the last sub-step [kg·m/s per metre of depth].
+struct ContactPoint {
+  Vec2 at{0, 0};            // world [m], when it was found
+  double separation = 0.0;  // [m]
+  double normalImpulse = 0.0, tangentImpulse = 0.0;
+  std::uint32_t id = 0;
+};
+
+/// A pair whose boxes are near each other.
+struct Contact {
+  std::uint32_t a = 0, b = 0;          // proxies, a's key below b's
+  std::uint32_t bodyA = 0, bodyB = 0;  // their bodies
+  PairCache cache;
+  std::uint32_t count = 0;  // of points
+  Vec2 normal{0, 0};        // from A to B, world
+  std::array<ContactPoint, 2> points;
+};
+
+/// Where the bodies are at the start of a step, and how far each may get.
+struct BodyPoses {
+  std::vector<Transform> pose;      // by body; the domain's last
+  std::vector<double> travel;       // of any of its points in the step [m]
+  std::vector<std::uint8_t> still;  // asleep, or never moved by contacts
+};
+
+/// Contacts in the order of their keys, whatever history led to them. Sleepers keep theirs as they are.
+class ContactList {
+ public:
+  /// The pieces of all bodies; contacts between pieces that are still there are kept. Cost: convex pieces of shapes
+  /// that are new, and what `update` costs when it pairs anew.
+  void rebuild(const DomainDef& domain, const BodySet& bodies);
+
+  /// Finds the points of all pairs that may touch in the step. Boxes have a margin, so pairs are looked for anew only
+  /// when one has left its own. Cost: pairs; when looking anew, pieces × those that overlap them along x.
+  void update(const BodySet& bodies, const BodyPoses& poses, Crew& crew);
+
+  std::vector<Contact>& contacts() { return contacts_; }
+  const std::vector<Contact>& contacts() const { return contacts_; }
+  const std::vector<Proxy>& proxies() const { return proxies_; }
+  const ConvexShape& shape(std::uint32_t proxy) const { return *proxies_[proxy].shape; }
+  /// Smallest inner radius of a body's pieces [m].
+  double thickness(std::size_t body) const { return thickness_[body]; }
+  /// visit(proxy) for each piece of a body.
+  template <typename Visit>
+  void forEachPiece(std::size_t body, Visit&& visit) const {
+    for (std::uint32_t p = firstProxy_[body]; p < firstProxy_[body + 1]; ++p) visit(p);
+  }
+  /// Box of a piece over the step, with all of its travel [m].
+  const Box& reach(std::uint32_t proxy) const { return reach_[proxy]; }
+  bool mayTouch(const BodySet& bodies, std::uint32_t bodyA, std::uint32_t bodyB) const;
+
+  /// Pairs, their memory and the boxes that they were found with.
+  void archive(Archive& a);
+
+ private:
+  struct Shape {
+    std::shared_ptr<const Polygon> polygon;
+    std::vector<ConvexShape> pieces;
+  };
+  void findReach(const BodyPoses& poses, Crew& crew);
+  bool leftItsBox() const;
+  void pairAnew(const BodySet& bodies);
+  void sortAlongX();
+  void collide(Contact& contact, const BodyPoses& poses) const;
+
+  std::vector<std::unique_ptr<Shape>> shapes_;
+  std::unique_ptr<Shape> walls_;
+  std::vector<Proxy> proxies_;
+  std::vector<std::uint32_t> firstProxy_;  // by body, and the end
+  std::vector<double> thickness_;
+  std::vector<Box> reach_, fat_;  // by proxy
+  std::vector<Contact> contacts_, before_;
+  std::vector<std::uint32_t> order_;  // proxies along x
+  struct Candidate {
+    std::uint64_t keyA, keyB;
+    std::uint32_t a, b;
+  };
+  std::vector<Candidate> candidates_;
+  bool stale_ = true;  // boxes are to be made anew
+};
+
+}  // namespace froude

@@ -1,0 +1,95 @@
+// Keeps bodies apart and lets them rub: contacts as soft constraints, solved in small sub-steps.
+//
+// E. Catto, "Soft constraints", GDC 2011 (the implicit spring); M. Macklin et al., "Small steps in physics simulation",
+// SCA 2019 (one iteration a sub-step); each sub-step is followed by a relaxation that takes the velocity out again
+// which pushing apart has put in.
+#pragma once
+
+#include <vector>
+
+#include <froude/base/crew.h>
+#include <froude/solver/rigid/contact_list.h>
+
+namespace froude {
+
+/// A body in the solver: its velocity, and how far it has come since the start of the step.
+struct alignas(64) SolverBody {
+  double vx = 0.0, vy = 0.0, w = 0.0;  // [m/s, rad/s]
+  double dx = 0.0, dy = 0.0;           // of the frame's origin [m]
+  double turn = 0.0;                   // [rad]
+  double c = 1.0, s = 0.0;             // of the turn
+};
+
+/// What the contacts of a step gave to whom.
+struct ContactTotals {
+  Vec2 outside{0, 0};  // impulse of fixed and scripted bodies and walls on free ones [kg·m/s per metre]
+  double work = 0.0;   // of moving surfaces on free bodies [J/m]
+};
+
+class ContactSolver {
+ public:
+  /// What is the same for all contacts of a step.
+  struct Settings {
+    double h = 0.0;  // sub-step [s]
+    int substeps = 1;
+    double restitutionAbove = 0.0;  // approach that bounces [m/s]
+  };
+
+  /// Takes the contacts that have points and of which one body is awake, in the order of the list; colours them.
+  /// `awake` by body (the domain's last is 0).
+  void prepare(const ContactList& list, const BodySet& bodies, const BodyPoses& poses,
+               const std::vector<std::uint8_t>& awake, const Settings& settings);
+
+  // The parts of a sub-step. Bodies by index, the domain's last.
+  void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
+  void warmStart(std::vector<SolverBody>& bodies, Crew& crew);
+  /// Velocities that part what overlaps, and let nothing come nearer than touching within the sub-step.
+  void push(std::vector<SolverBody>& bodies, Crew& crew) { solve(bodies, crew, true); }
+  /// Takes out what the push put in; bounces.
+  void relax(std::vector<SolverBody>& bodies, Crew& crew) { solve(bodies, crew, false); }
+
+  /// Impulses back to the list; adds what bodies got to `onBody` (impulse x, y, moment about the centre of mass, by
+  /// body).
+  ContactTotals finish(const std::vector<SolverBody>& bodies, ContactList& list,
+                       std::vector<std::array<double, 3>>& onBody) const;
+  std::size_t size() const { return constraints_.size(); }
+
+ private:
+  struct Point {
+    Vec2 armA, armB;    // from the frames' origins at the start of the step [m]
+    double separation;  // at the start of the step, without what the arms contribute [m]
+    double normalMass, tangentMass;
+    double normalImpulse, tangentImpulse;
+    double normalSum, tangentSum;  // over the sub-steps
+    double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
+  };
+  struct Constraint {
+    std::uint32_t a, b, contact, count;
+    double inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
+    Vec2 normal;
+    double friction, restitution, belt;  // belt: of the surfaces along the tangent [m/s]
+    double pushRate, pushLimit;          // [1/s], [m/s]
+    std::array<Point, 2> points;
+  };
+  struct Colour {
+    std::uint32_t begin, end;
+  };
+  void colour(const std::vector<std::uint32_t>& active, const ContactList& list,
+              const std::vector<std::uint8_t>& awake);
+  Constraint makeConstraint(std::uint32_t contact, const ContactList& list, const BodySet& bodies,
+                            const BodyPoses& poses) const;
+  template <typename Body>
+  void forEachColour(Crew& crew, Body&& body);
+  void solve(std::vector<SolverBody>& bodies, Crew& crew, bool pushing);
+  void solveOne(Constraint& c, SolverBody* bodies, bool pushing) const;
+
+  Settings settings_;
+  bool anyBounces_ = false;
+  std::vector<Constraint> constraints_;  // by colour
+  std::vector<Colour> colours_;
+  std::vector<std::uint32_t> active_, colourOf_, order_, start_;
+  std::vector<std::uint64_t> taken_;  // colours of each body's contacts
+  std::uint32_t serialFrom_ = 0;      // constraints that found no colour
+};
+
+}  // namespace froude

@@ -1,0 +1,321 @@
+#include <froude/solver/rigid/rigid_solver.h>
+
+#include <algorithm>
+
+#include <froude/solver/contact/time_of_impact.h>
+
+namespace froude {
+namespace {
+
+constexpr double kSubstep = 1.0 / 240.0;  // [s]
+constexpr std::size_t kBlock = 256;       // bodies a task
+constexpr std::size_t kCrewFrom = 64;     // contacts that are worth a second thread
+// Of √(g·size): slower than this for so long, a body may sleep.
+constexpr double kStillSpeed = 0.01;
+constexpr double kStillTime = 0.5;  // [s]
+constexpr double kFast = 0.5;       // thicknesses a step from which on a body's way is followed
+constexpr double kSlop = 1e-3;      // of the thickness: contacts are found this much before they touch
+
+int substepsFor(double dt) { return std::max(1, static_cast<int>(std::ceil(dt / kSubstep - 1e-6))); }
+
+}  // namespace
+
+void RigidSolver::admitBodies(const BodySet& bodies) {
+  if (version_ == bodies.version()) return;
+  version_ = bodies.version();
+  list_.rebuild(domain_, bodies);
+  const std::size_t n = bodies.size() + 1;
+  poses_.pose.assign(n, Transform());
+  poses_.travel.assign(n, 0.0);
+  poses_.still.assign(n, 1);
+  bodies_.assign(n, {});
+  awake_.assign(n, 0);
+  onBody_.assign(n, {0.0, 0.0, 0.0});
+  felt_.assign(n, {});
+  impact_.assign(n, 1.0);
+  hinged_.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.definition(i).hinge) hinged_.push_back(static_cast<std::uint32_t>(i));
+  }
+  motorImpulse_.assign(hinged_.size(), 0.0);
+}
+
+// A body can get as far as its velocity, what gravity and pressure add, and a little more for what others push.
+void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyMotion& m = bodies.motion(i);
+    poses_.pose[i] = m.transform();
+    const bool free = bodies.isFree(i);
+    const FreeState& f = bodies.freeState(i);
+    const Vec2 v = free ? f.velocity : m.velocity;
+    const double w = free ? f.spin : m.spin;
+    const double speed = v.norm() + std::abs(w) * bodies.radius(i);
+    awake_[i] = free && f.asleep == 0.0;
+    const bool moves = free ? awake_[i] != 0 : speed > 0.0;
+    poses_.still[i] = moves ? 0 : 1;
+    const double slop = kSlop * list_.thickness(i);
+    poses_.travel[i] =
+        free && !moves ? slop : slop + step.dt * (speed + 2.0 * (free ? step.gravityScale : 0.0) * step.dt);
+  }
+}
+
+std::uint32_t RigidSolver::rootOf(std::uint32_t body) {
+  while (parent_[body] != body) {
+    parent_[body] = parent_[parent_[body]];
+    body = parent_[body];
+  }
+  return body;
+}
+
+// Whoever touches one that is awake, or something that is driven, is awake with all that it touches. The smaller number
+// is the root, so that islands do not depend on the order.
+void RigidSolver::wakeIslands(BodySet& bodies, RigidStats& stats) {
+  const std::size_t n = bodies.size();
+  parent_.resize(n + 1);
+  for (std::uint32_t i = 0; i <= n; ++i) parent_[i] = i;
+  std::vector<std::uint8_t>& mayRest = islandMayRest_;
+  for (const Contact& c : list_.contacts()) {
+    if (c.count == 0 || c.bodyA >= n || c.bodyB >= n || !bodies.isFree(c.bodyA) || !bodies.isFree(c.bodyB)) continue;
+    const std::uint32_t a = rootOf(c.bodyA), b = rootOf(c.bodyB);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+  mayRest.assign(n + 1, 1);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (bodies.isFree(i) && awake_[i] != 0) mayRest[rootOf(i)] = 0;
+  }
+  for (const Contact& c : list_.contacts()) {
+    if (c.count == 0) continue;
+    auto stirs = [&](std::uint32_t body, std::uint32_t other) {
+      if (body < n && !bodies.isFree(body) && poses_.still[body] == 0) mayRest[rootOf(other)] = 0;
+    };
+    stirs(c.bodyA, c.bodyB);
+    stirs(c.bodyB, c.bodyA);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (!bodies.isFree(i)) continue;
+    stats.islands += rootOf(i) == i && mayRest[i] == 0;
+    if (awake_[i] != 0 || mayRest[rootOf(i)] != 0) continue;
+    awake_[i] = 1;
+    bodies.wake(i);
+  }
+}
+
+void RigidSolver::loadBodies(const BodySet& bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    SolverBody& b = bodies_[i];
+    b = {};
+    onBody_[i] = {0.0, 0.0, 0.0};
+    if (bodies.isFree(i)) {
+      if (awake_[i] == 0) continue;
+      const FreeState& f = bodies.freeState(i);
+      b.vx = f.velocity.x(), b.vy = f.velocity.y(), b.w = f.spin;
+    } else {
+      const BodyMotion& m = bodies.motion(i);
+      b.vx = m.velocity.x(), b.vy = m.velocity.y(), b.w = m.spin;
+    }
+  }
+  bodies_.back() = {};
+}
+
+void RigidSolver::integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats,
+                                      Crew& crew) {
+  crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (awake_[i] == 0) continue;
+      const FreeState& f = bodies.freeState(i);
+      const MassData& mass = bodies.mass(i);
+      SolverBody& b = bodies_[i];
+      const Vec2 a = step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy)) + mass.inverseMass * f.pressure;
+      b.vx += h * a.x();
+      b.vy += h * a.y();
+      b.w += h * mass.inverseInertia * f.pressureTorque;
+    }
+  });
+  // Booked apart, in the order of the bodies: the sum must not depend on threads.
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (awake_[i] == 0) continue;
+    const SolverBody& b = bodies_[i];
+    stats.impulse += h * bodies.mass(i).mass * step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy));
+  }
+}
+
+// The point of the hinge stays where it is: what is left of a motion is its turning about that point, with the momentum
+// that it has about it. Exact, so that a pendulum integrates its angle alone.
+void RigidSolver::solveHinges(const BodySet& bodies, double h, bool last, RigidStats& stats) {
+  for (std::size_t k = 0; k < hinged_.size(); ++k) {
+    const std::uint32_t i = hinged_[k];
+    if (awake_[i] == 0) continue;
+    SolverBody& b = bodies_[i];
+    const MassData& mass = bodies.mass(i);
+    const HingeDef& hinge = *bodies.definition(i).hinge;
+    const Vec2 start = poses_.pose[i].rotation.apply(bodies.hingeAnchor(i));
+    const Vec2 arm = -Rotation{b.c, b.s}.apply(start);  // from the hinge to the centre of mass
+    const Vec2 v(b.vx, b.vy);
+    const double inertia = mass.inertia + mass.mass * arm.squaredNorm();
+    double w = (mass.inertia * b.w + mass.mass * cross(arm, v)) / inertia;
+    if (hinge.motor) {
+      const double most = hinge.motor->torque * h;
+      const double impulse = std::clamp(motorImpulse_[k] + inertia * (hinge.motor->speed - w), -most, most);
+      const double change = impulse - motorImpulse_[k];
+      stats.work += change * (w + 0.5 * change / inertia);
+      w += change / inertia;
+      motorImpulse_[k] = last ? 0.0 : impulse;
+    }
+    const Vec2 turned = cross(w, arm);
+    const Vec2 impulse = mass.mass * (turned - v);
+    stats.impulse += impulse;
+    onBody_[i][0] += impulse.x(), onBody_[i][1] += impulse.y();
+    onBody_[i][2] += mass.inertia * (w - b.w);
+    b.vx = turned.x(), b.vy = turned.y(), b.w = w;
+  }
+}
+
+void RigidSolver::integratePositions(const BodySet& bodies, double h, Crew& crew) {
+  crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SolverBody& b = bodies_[i];
+      if (poses_.still[i] != 0 && awake_[i] == 0) continue;
+      const Rotation turn = Rotation::of(b.turn + h * b.w);
+      if (bodies.definition(i).hinge) {
+        const Vec2 start = poses_.pose[i].rotation.apply(bodies.hingeAnchor(i));
+        const Vec2 moved = start - turn.apply(start);
+        b.dx = moved.x(), b.dy = moved.y();
+      } else {
+        b.dx += h * b.vx;
+        b.dy += h * b.vy;
+      }
+      b.turn += h * b.w;
+      b.c = turn.c, b.s = turn.s;
+    }
+  });
+}
+
+void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies) {
+  const double rate = 1.0 / step.dt;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    felt_[i] = {{onBody_[i][0], onBody_[i][1]}, onBody_[i][2]};
+    if (!bodies.isFree(i)) continue;
+    const SolverBody& b = bodies_[i];
+    FreeState& f = bodies.freeState(i);
+    if (awake_[i] != 0) {
+      f.velocity = {b.vx, b.vy};
+      f.spin = b.w;
+    }
+    bodies.setMotion(i, rate * Vec2(b.dx, b.dy), rate * b.turn);
+  }
+}
+
+// The share of the step up to which a fast body is free; its contacts of this step are the contact solver's matter.
+double RigidSolver::impactOf(std::size_t body, const RigidStep& step, const BodySet& bodies) const {
+  auto motionOf = [&](std::uint32_t i) {
+    if (i == bodies.size()) return RigidMotion{Transform(), {0.0, 0.0}, 0.0};
+    const BodyMotion& m = bodies.motion(i);
+    return RigidMotion{m.transform(), m.velocity, m.spin};
+  };
+  const auto self = static_cast<std::uint32_t>(body);
+  double first = step.dt;
+  for (const Contact& c : list_.contacts()) {
+    if ((c.bodyA != self && c.bodyB != self) || c.count > 0) continue;
+    const ConvexShape& a = list_.shape(c.a);
+    const ConvexShape& b = list_.shape(c.b);
+    const double target = kSlop * std::min(a.innerRadius(), b.innerRadius());
+    const TimeOfImpact impact = timeOfImpact(a, motionOf(c.bodyA), b, motionOf(c.bodyB), first, target);
+    const bool stops = impact.status == ImpactStatus::Hit || impact.status == ImpactStatus::Failed;
+    if (stops && impact.time < first) first = impact.time;
+  }
+  return first / step.dt;
+}
+
+void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew) {
+  auto isFast = [&](std::size_t i) {
+    if (awake_[i] == 0 || bodies.definition(i).hinge) return false;
+    const BodyMotion& m = bodies.motion(i);
+    return step.dt * (m.velocity.norm() + std::abs(m.spin) * bodies.radius(i)) > kFast * list_.thickness(i);
+  };
+  bool any = false;
+  for (std::size_t i = 0; i < bodies.size() && !any; ++i) any = bodies.isFree(i) && isFast(i);
+  if (!any) return;
+  crew.stage(bodies.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      impact_[i] = bodies.isFree(i) && isFast(i) ? impactOf(i, step, bodies) : 1.0;
+    }
+  });
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (impact_[i] >= 1.0) continue;
+    const BodyMotion& m = bodies.motion(i);
+    bodies.setMotion(i, impact_[i] * m.velocity, impact_[i] * m.spin);
+  }
+}
+
+// An island sleeps when all of it has hardly moved for a while.
+void RigidSolver::fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats) {
+  const std::size_t n = bodies.size();
+  islandMayRest_.assign(n + 1, 1);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (awake_[i] == 0) continue;
+    FreeState& f = bodies.freeState(i);
+    const double speed = f.velocity.norm() + std::abs(f.spin) * bodies.radius(i);
+    const bool driven = bodies.definition(i).hinge && bodies.definition(i).hinge->motor;
+    const bool pushed = f.pressure.squaredNorm() > 0.0 || driven;
+    const bool still = speed < kStillSpeed * std::sqrt(step.gravityScale * bodies.radius(i)) && !pushed;
+    f.stillFor = still ? f.stillFor + step.dt : 0.0;
+    if (f.stillFor < kStillTime) islandMayRest_[rootOf(i)] = 0;
+  }
+  for (const Contact& c : list_.contacts()) {
+    if (c.count == 0) continue;
+    auto stirs = [&](std::uint32_t body, std::uint32_t other) {
+      if (body < n && !bodies.isFree(body) && poses_.still[body] == 0) islandMayRest_[rootOf(other)] = 0;
+    };
+    stirs(c.bodyA, c.bodyB);
+    stirs(c.bodyB, c.bodyA);
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (awake_[i] == 0 || islandMayRest_[rootOf(i)] == 0) continue;
+    FreeState& f = bodies.freeState(i);
+    stats.impulse -= bodies.mass(i).mass * f.velocity;
+    f.asleep = 1.0;
+    f.velocity = {0.0, 0.0};
+    f.spin = 0.0;
+    bodies.setMotion(i, {0.0, 0.0}, 0.0);
+  }
+}
+
+void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& stats) {
+  admitBodies(bodies);
+  findPoses(step, bodies);
+  const int substeps = substepsFor(step.dt);
+  const double h = step.dt / substeps;
+  Crew::run(list_.contacts().size() >= kCrewFrom, [&](Crew& crew) {
+    list_.update(bodies, poses_, crew);
+    wakeIslands(bodies, stats);
+    loadBodies(bodies);
+    solver_.prepare(list_, bodies, poses_, awake_, {h, substeps, 2.0 * step.gravityScale * step.dt});
+    for (int k = 0; k < substeps; ++k) {
+      integrateVelocities(step, bodies, h, stats, crew);
+      solver_.noteApproach(bodies_, crew);
+      solver_.warmStart(bodies_, crew);
+      solveHinges(bodies, h, false, stats);
+      solver_.push(bodies_, crew);
+      solveHinges(bodies, h, false, stats);
+      integratePositions(bodies, h, crew);
+      solver_.relax(bodies_, crew);
+      solveHinges(bodies, h, true, stats);
+    }
+    const ContactTotals totals = solver_.finish(bodies_, list_, onBody_);
+    stats.impulse += totals.outside;
+    stats.work += totals.work;
+    storeMotions(step, bodies);
+    stopAtImpacts(step, bodies, crew);
+  });
+  fallAsleep(step, bodies, stats);
+  stats.contacts = solver_.size();
+  for (const std::uint8_t a : awake_) stats.awake += a;
+}
+
+void RigidSolver::archive(const BodySet& bodies, Archive& a) {
+  if (a.loading()) version_ = ~std::uint64_t{0};
+  admitBodies(bodies);
+  list_.archive(a);
+}
+
+}  // namespace froude

@@ -1,0 +1,79 @@
+// Moves the free bodies through a step: gravity, outside forces, contacts, hinges, motors, sleep. Knows no particles.
+#pragma once
+
+#include <vector>
+
+#include <froude/base/parallel.h>
+#include <froude/solver/rigid/contact_list.h>
+#include <froude/solver/rigid/contact_solver.h>
+
+namespace froude {
+
+/// A step of the bodies. `gravity(x)` [m/s²] at a centre of mass.
+struct RigidStep {
+  double dt = 0.0;  // [s]
+  FunctionRef<Vec2(const Vec2&)> gravity;
+  double gravityScale = 0.0;  // largest |g| [m/s²]
+};
+
+/// What a step gave to the free bodies from outside, and found.
+struct RigidStats {
+  Vec2 impulse{0, 0};  // of gravity, walls, fixed and scripted bodies, hinges [kg·m/s per metre]
+  double work = 0.0;   // of scripted bodies, belts and motors [J/m]
+  std::size_t contacts = 0, awake = 0, islands = 0;
+};
+
+/// What a body felt of contacts and hinge over the last step.
+struct BodyImpulse {
+  Vec2 impulse{0, 0};   // [kg·m/s per metre]
+  double moment = 0.0;  // about the frame's origin
+};
+
+/// Free bodies of a world. Throws nothing in a step.
+class RigidSolver {
+ public:
+  explicit RigidSolver(const DomainDef& domain) : domain_(domain) {}
+
+  /// Finds where all free bodies are after `step.dt`, contacts included, in sub-steps of at most 1/240 s: sets their
+  /// velocities at the end (FreeState) and their mean motion over the step (BodyMotion). FreeState::pressure acts as a
+  /// constant force. Scripted motions are those of BodySet::beginStep. The same bits on any number of threads.
+  void advance(const RigidStep& step, BodySet& bodies, RigidStats& stats);
+
+  /// Of the last step, by body; not saved.
+  const BodyImpulse& felt(std::size_t body) const { return felt_[body]; }
+
+  /// Contacts that have points now.
+  const ContactList& contacts() const { return list_; }
+  /// Everything on which the future depends besides the bodies.
+  void archive(const BodySet& bodies, Archive& a);
+
+ private:
+  void admitBodies(const BodySet& bodies);
+  void findPoses(const RigidStep& step, const BodySet& bodies);
+  void wakeIslands(BodySet& bodies, RigidStats& stats);
+  void loadBodies(const BodySet& bodies);
+  void integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats, Crew& crew);
+  void solveHinges(const BodySet& bodies, double h, bool last, RigidStats& stats);
+  void integratePositions(const BodySet& bodies, double h, Crew& crew);
+  void storeMotions(const RigidStep& step, BodySet& bodies);
+  void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
+  double impactOf(std::size_t body, const RigidStep& step, const BodySet& bodies) const;
+  void fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats);
+  std::uint32_t rootOf(std::uint32_t body);
+
+  DomainDef domain_;
+  ContactList list_;
+  ContactSolver solver_;
+  BodyPoses poses_;
+  std::vector<SolverBody> bodies_;
+  std::vector<std::uint8_t> awake_;
+  std::vector<std::uint32_t> parent_, hinged_;
+  std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
+  std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment
+  std::vector<BodyImpulse> felt_;
+  std::vector<double> impact_;  // share of the step at which a fast body meets something, by body
+  std::vector<std::uint8_t> islandMayRest_;
+  std::uint64_t version_ = ~std::uint64_t{0};  // of the bodies that the list was built from
+};
+
+}  // namespace froude
