@@ -131,10 +131,19 @@ void sortRest(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out
   if (!def.gravityField && def.gravity.norm() == 0.0) out.push_back({"gravity", "`gravity` is 0"});
 }
 
+// What the library refuses of a scene is wrong in the scene.
+World worldOf(const scene::Scene& scene) {
+  try {
+    return scene::makeWorld(scene);
+  } catch (const Error& e) {
+    throw run::UsageError(scene.file + ": " + e.what());
+  }
+}
+
 // Steps a world that is thrown away; a mean over its first moments, without the very first sub-step, which allocates.
 double measuredSubstep(const scene::Scene& scene) {
   using Clock = std::chrono::steady_clock;
-  World world = scene::makeWorld(scene);
+  World world = worldOf(scene);
   if (!world.substep().ok()) return 0.0;
   const Clock::time_point start = Clock::now();
   double elapsed = 0.0;
