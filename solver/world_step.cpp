@@ -170,7 +170,8 @@ void World::Impl::moveBodies(double dt) {
   bodies.beginStep(time, dt);
   rigidStats = {};
   if (!bodies.anyFree()) return;
-  const RigidStep step{dt, [&](const Vec2& x) { return gravity.at(x, time); }, gravityScale};
+  const auto gravityAt = [&](const Vec2& x) { return gravity.at(x, time); };
+  const RigidStep step{dt, gravityAt, gravityScale};
   pressureBefore.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     FreeState& f = bodies.freeState(i);

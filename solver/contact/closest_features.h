@@ -10,8 +10,8 @@
 namespace froude {
 
 enum class PairStatus : std::uint8_t {
-  Apart,        // farther than asked for
-  Near,         // apart, within the margin that was asked for
+  Apart,        // farther than asked for; a query that asks for no margin: farther than 0
+  Near,         // within the margin that was asked for, and not overlapping
   Overlapping,  // interiors share points; touching at distance 0 is Near
   Failed        // no answer within the bound on steps, or a number that is not finite: never a wrong answer
 };
@@ -38,8 +38,9 @@ struct ClosestFeatures {
   int steps = 0;              // of the walk
 };
 
-/// bInA: B's pose in A's frame. Bounded by size(a) + size(b) steps; a few when warm. Overlap is recognised and
-/// reported, `sat` then has the depth.
+/// bInA: B's pose in A's frame. Bounded by 2 (size(a) + size(b) + 8) steps; a few when warm. Two edges that are
+/// parallel to 1e-12 and face each other are both named, their points stand in the middle of what they share. Overlap
+/// is recognised and reported with the normal of the least depth; `sat` then starts from its edge.
 FROUDE_API ClosestFeatures closestFeatures(const ConvexShape& a, const ConvexShape& b, const Transform& bInA,
                                            PairCache& cache);
 

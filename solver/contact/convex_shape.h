@@ -10,12 +10,17 @@
 
 namespace froude {
 
-/// Vertices counter-clockwise; edge k runs from vertex k to the next. Collinear runs are allowed. A shape that is a
+/// By so much may a contact's direction leave a vertex's cone before it counts as a ghost [rad].
+inline constexpr double kConeTolerance = 1e-3;
+
+/// Vertices counter-clockwise; edge k runs from vertex k to the next. Collinear runs are allowed, each of their edges
+/// is then a feature of its own. A shape that is a
 /// piece of a concave polygon knows which of its edges are cuts: nothing outside the polygon can touch those, and
 /// contacts against them would be ghosts at the seams.
 class FROUDE_API ConvexShape {
  public:
-  /// Throws Error for fewer than three vertices, a vertex that is not finite, no area or a turn to the right.
+  /// Throws Error for fewer than three vertices, a vertex that is not finite, the same vertex twice in a row, no area,
+  /// a turn to the right or more than one turn in all. Decided exactly.
   explicit ConvexShape(std::vector<Vec2> vertices);
   /// The convex pieces of a polygon, in the order of `convexPieces`, vertices relative to `origin` [m].
   static std::vector<ConvexShape> piecesOf(const Polygon& polygon, const Vec2& origin = {0.0, 0.0});
@@ -34,19 +39,23 @@ class FROUDE_API ConvexShape {
   double outerRadius() const { return outerRadius_; }
   double innerRadius() const { return innerRadius_; }
   Box box(const Transform& pose) const;
+  /// The vertex farthest in `direction` (any length), climbed to from `hint`. Cost: O(size), O(1) where the hint is
+  /// near.
+  std::uint32_t support(const Vec2& direction, std::uint32_t hint) const;
 
   /// True for a whole polygon: then all edges and directions can be touched.
   bool isWhole() const { return cone_.empty(); }
   /// Is the edge one of the polygon's outline, not a cut?
   bool isOutline(std::uint32_t edge) const { return isWhole() || outline_[edge] != 0; }
   /// Can something outside the polygon touch this vertex with `direction` (unit, pointing out of the shape)? True in
-  /// the cone between the normals of the polygon's own edges at that vertex; never at a reflex one.
+  /// the cone between the normals of the polygon's own edges at that vertex, widened by kConeTolerance; never at a
+  /// reflex one.
   bool allows(std::uint32_t vertex, const Vec2& direction) const;
 
  private:
-  struct Cone {  // the polygon's own normals before and after the vertex; equal to nothing at a reflex vertex
-    Vec2 before, after;
-    bool open;
+  struct Cone {          // of the directions in which a vertex of the whole polygon can be touched
+    Vec2 before, after;  // the polygon's own normals on both sides
+    bool open = false;   // false at a reflex vertex
   };
   ConvexShape() = default;
   void finish();

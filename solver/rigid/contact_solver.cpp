@@ -7,7 +7,9 @@ namespace {
 
 constexpr std::size_t kBlock = 32;      // contacts a task
 constexpr std::uint32_t kColours = 32;  // between free bodies; as many again with what does not give way
-constexpr double kPushShare = 0.15;     // of an overlap a sub-step
+constexpr double kPartShare = 0.4;      // of an overlap that a sub-step takes away
+constexpr int kColdIterations = 50;     // where most points are new: nothing is known of what they bear
+constexpr double kTouching = 2e-5;      // thicknesses apart that count as touching
 constexpr double kPushLimit = 20.0;     // thicknesses of the thinner body a second
 
 double mixedFriction(double a, double b) { return std::sqrt(a * b); }
@@ -35,7 +37,7 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
   c.friction = mixedFriction(da.friction, db.friction);
   c.restitution = std::max(da.restitution, db.restitution);
   c.belt = (wallA ? 0.0 : da.surfaceVelocity) + (wallB ? 0.0 : db.surfaceVelocity);
-  c.pushRate = kPushShare / settings_.h;
+  c.touching = kTouching * std::min(list.thickness(c.a), list.thickness(c.b));
   c.pushLimit = kPushLimit * std::min(list.thickness(c.a), list.thickness(c.b));
   const Vec2 originA = poses.pose[c.a].position, originB = poses.pose[c.b].position;
   const Vec2 tangent = leftNormal(c.normal);
@@ -46,17 +48,20 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
     p.armA = at.at - originA;
     p.armB = at.at - originB;
     p.separation = at.separation;
-    auto massAlong = [&](const Vec2& d) {
+    auto inverseMassAlong = [&](const Vec2& d) {
       const double ra = cross(p.armA, d), rb = cross(p.armB, d);
-      const double inverse = inverseMass + c.inverseInertiaA * ra * ra + c.inverseInertiaB * rb * rb;
-      return inverse > 0.0 ? 1.0 / inverse : 0.0;
+      return inverseMass + c.inverseInertiaA * ra * ra + c.inverseInertiaB * rb * rb;
     };
-    p.normalMass = massAlong(c.normal);
-    p.tangentMass = massAlong(tangent);
+    p.inverseNormalMass = inverseMassAlong(c.normal);
+    p.tangentMass = 1.0 / inverseMassAlong(tangent);
     p.normalImpulse = at.normalImpulse;
     p.tangentImpulse = at.tangentImpulse;
     p.normalSum = p.tangentSum = p.approach = 0.0;
   }
+  const Point &p = c.points[0], &q = c.points[1];
+  c.coupling = c.count < 2 ? 0.0
+                           : inverseMass + c.inverseInertiaA * cross(p.armA, c.normal) * cross(q.armA, c.normal) +
+                                 c.inverseInertiaB * cross(p.armB, c.normal) * cross(q.armB, c.normal);
   return c;
 }
 
@@ -107,10 +112,14 @@ void ContactSolver::prepare(const ContactList& list, const BodySet& bodies, cons
   colour(active_, list, awake);
   constraints_.resize(order_.size());
   anyBounces_ = false;
+  std::size_t points = 0, cold = 0;
   for (std::size_t k = 0; k < order_.size(); ++k) {
-    constraints_[k] = makeConstraint(order_[k], list, bodies, poses);
-    anyBounces_ = anyBounces_ || constraints_[k].restitution > 0.0;
+    const Constraint& c = constraints_[k] = makeConstraint(order_[k], list, bodies, poses);
+    anyBounces_ = anyBounces_ || c.restitution > 0.0;
+    for (std::uint32_t i = 0; i < c.count; ++i) cold += c.points[i].normalImpulse == 0.0;
+    points += c.count;
   }
+  iterations_ = 2 * cold > points ? kColdIterations : 1;
 }
 
 template <typename Body>
@@ -122,22 +131,6 @@ void ContactSolver::forEachColour(Crew& crew, Body&& body) {
     });
   }
   for (std::size_t k = serialFrom_; k < constraints_.size(); ++k) body(constraints_[k]);
-}
-
-void ContactSolver::noteApproach(const std::vector<SolverBody>& bodies, Crew& crew) {
-  if (!anyBounces_) return;
-  crew.stage(constraints_.size(), 4 * kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      Constraint& c = constraints_[k];
-      const SolverBody& a = bodies[c.a];
-      const SolverBody& b = bodies[c.b];
-      for (std::uint32_t i = 0; i < c.count; ++i) {
-        Point& p = c.points[i];
-        p.approach = c.normal.x() * (b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y()) +
-                     c.normal.y() * (b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x());
-      }
-    }
-  });
 }
 
 namespace {
@@ -157,27 +150,91 @@ void apply(const Constraint& c, const Vec2& armA, const Vec2& armB, double x, do
   }
 }
 
+// The same to the parting velocities.
+template <typename Constraint>
+void applyParting(const Constraint& c, const Vec2& armA, const Vec2& armB, double x, double y, SolverBody& a,
+                  SolverBody& b) {
+  if (c.inverseMassA > 0.0) {
+    a.px -= c.inverseMassA * x;
+    a.py -= c.inverseMassA * y;
+    a.pw -= c.inverseInertiaA * (armA.x() * y - armA.y() * x);
+  }
+  if (c.inverseMassB > 0.0) {
+    b.px += c.inverseMassB * x;
+    b.py += c.inverseMassB * y;
+    b.pw += c.inverseInertiaB * (armB.x() * y - armB.y() * x);
+  }
+}
+
+template <typename Point>
+double normalVelocity(const Vec2& n, const Point& p, const SolverBody& a, const SolverBody& b) {
+  return n.x() * (b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y()) +
+         n.y() * (b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x());
+}
+
+// Of the points where the bodies are now [m].
+template <typename Point>
+double separationNow(const Vec2& n, const Point& p, const SolverBody& a, const SolverBody& b) {
+  const double ax = a.c * p.armA.x() - a.s * p.armA.y(), ay = a.s * p.armA.x() + a.c * p.armA.y();
+  const double bx = b.c * p.armB.x() - b.s * p.armB.y(), by = b.s * p.armB.x() + b.c * p.armB.y();
+  return p.separation + n.x() * (b.dx - a.dx + (bx - p.armB.x()) - (ax - p.armA.x())) +
+         n.y() * (b.dy - a.dy + (by - p.armB.y()) - (ay - p.armA.y()));
+}
+
+// Impulses of one or two points: x ≥ 0, v = A·x + b ≥ 0 and one of each pair 0; by trying which of the two push. Where
+// rounding leaves none, both are as if alone and give half.
+template <typename Constraint>
+std::array<double, 2> solvePoints(const Constraint& c, const std::array<double, 2>& b) {
+  const double a00 = c.points[0].inverseNormalMass;
+  if (c.count == 1) return {std::max(0.0, -b[0] / a00), 0.0};
+  const double a01 = c.coupling, a11 = c.points[1].inverseNormalMass;
+  const double determinant = a00 * a11 - a01 * a01;
+  if (determinant > 1e-6 * a00 * a11) {
+    const double x = (a01 * b[1] - a11 * b[0]) / determinant, y = (a01 * b[0] - a00 * b[1]) / determinant;
+    if (x >= 0.0 && y >= 0.0) return {x, y};
+  }
+  if (const double x = -b[0] / a00; x >= 0.0 && a01 * x + b[1] >= 0.0) return {x, 0.0};
+  if (const double y = -b[1] / a11; y >= 0.0 && a01 * y + b[0] >= 0.0) return {0.0, y};
+  if (b[0] >= 0.0 && b[1] >= 0.0) return {0.0, 0.0};
+  return {std::max(0.0, -0.5 * b[0] / a00), std::max(0.0, -0.5 * b[1] / a11)};
+}
+
 }  // namespace
 
+void ContactSolver::noteApproach(const std::vector<SolverBody>& bodies, Crew& crew) {
+  anyFast_.store(false, std::memory_order_relaxed);
+  if (!anyBounces_) return;
+  crew.stage(constraints_.size(), 4 * kBlock, [&](std::size_t begin, std::size_t end) {
+    bool fast = false;
+    for (std::size_t k = begin; k < end; ++k) {
+      Constraint& c = constraints_[k];
+      for (std::uint32_t i = 0; i < c.count; ++i) {
+        Point& p = c.points[i];
+        p.approach = normalVelocity(c.normal, p, bodies[c.a], bodies[c.b]);
+        fast = fast || (c.restitution > 0.0 && p.approach < -settings_.restitutionAbove);
+      }
+    }
+    if (fast) anyFast_.store(true, std::memory_order_relaxed);
+  });
+}
+
 void ContactSolver::warmStart(std::vector<SolverBody>& bodies, Crew& crew) {
+  noteApproach(bodies, crew);
   forEachColour(crew, [&](Constraint& c) {
-    SolverBody& a = bodies[c.a];
-    SolverBody& b = bodies[c.b];
     for (std::uint32_t i = 0; i < c.count; ++i) {
-      const Point& p = c.points[i];
+      Point& p = c.points[i];
+      p.normalSum += p.normalImpulse;
+      p.tangentSum += p.tangentImpulse;
       const double x = p.normalImpulse * c.normal.x() - p.tangentImpulse * c.normal.y();
       const double y = p.normalImpulse * c.normal.y() + p.tangentImpulse * c.normal.x();
-      apply(c, p.armA, p.armB, x, y, a, b);
+      apply(c, p.armA, p.armB, x, y, bodies[c.a], bodies[c.b]);
     }
   });
 }
 
-void ContactSolver::solveOne(Constraint& c, SolverBody* bodies, bool pushing) const {
-  SolverBody& a = bodies[c.a];
-  SolverBody& b = bodies[c.b];
+void ContactSolver::rub(Constraint& c, SolverBody& a, SolverBody& b) const {
   const double nx = c.normal.x(), ny = c.normal.y();
-  const double perStep = 1.0 / settings_.h;
-  for (std::uint32_t i = 0; i < c.count; ++i) {  // friction first: what keeps apart has the last word
+  for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
     const double vx = b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y();
     const double vy = b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x();
@@ -186,36 +243,93 @@ void ContactSolver::solveOne(Constraint& c, SolverBody* bodies, bool pushing) co
     const double impulse = std::clamp(p.tangentImpulse - p.tangentMass * slip, -grip, grip);
     const double change = impulse - p.tangentImpulse;
     p.tangentImpulse = impulse;
+    p.tangentSum += change;
     apply(c, p.armA, p.armB, -change * ny, change * nx, a, b);
-  }
-  for (std::uint32_t i = 0; i < c.count; ++i) {
-    Point& p = c.points[i];
-    double wanted = 0.0;  // relative velocity, at least
-    if (pushing) {
-      const double ax = a.c * p.armA.x() - a.s * p.armA.y(), ay = a.s * p.armA.x() + a.c * p.armA.y();
-      const double bx = b.c * p.armB.x() - b.s * p.armB.y(), by = b.s * p.armB.x() + b.c * p.armB.y();
-      const double moved = nx * (b.dx - a.dx + (bx - p.armB.x()) - (ax - p.armA.x())) +
-                           ny * (b.dy - a.dy + (by - p.armB.y()) - (ay - p.armA.y()));
-      const double separation = p.separation + moved;
-      wanted = separation > 0.0 ? -separation * perStep : std::min(-c.pushRate * separation, c.pushLimit);
-    } else if (p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0) {
-      wanted = -c.restitution * p.approach;
-    }
-    const double v = nx * (b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y()) +
-                     ny * (b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x());
-    const double impulse = std::max(0.0, p.normalImpulse - p.normalMass * (v - wanted));
-    const double change = impulse - p.normalImpulse;
-    p.normalImpulse = impulse;
-    apply(c, p.armA, p.armB, change * nx, change * ny, a, b);
-    if (!pushing) {
-      p.normalSum += p.normalImpulse;
-      p.tangentSum += p.tangentImpulse;
-    }
   }
 }
 
-void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew, bool pushing) {
-  forEachColour(crew, [&](Constraint& c) { solveOne(c, bodies.data(), pushing); });
+void ContactSolver::keepApart(Constraint& c, SolverBody& a, SolverBody& b) const {
+  std::array<double, 2> rest{0.0, 0.0};
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    const double room = std::max(0.0, separationNow(c.normal, p, a, b));
+    rest[i] = normalVelocity(c.normal, p, a, b) + room / settings_.h - p.inverseNormalMass * p.normalImpulse;
+    if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
+  }
+  const std::array<double, 2> x = solvePoints(c, rest);
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    Point& p = c.points[i];
+    const double change = x[i] - p.normalImpulse;
+    p.normalImpulse = x[i];
+    p.normalSum += change;
+    apply(c, p.armA, p.armB, change * c.normal.x(), change * c.normal.y(), a, b);
+  }
+}
+
+void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew) {
+  for (int k = 0; k < iterations_; ++k) {
+    forEachColour(crew, [&](Constraint& c) {
+      SolverBody& a = bodies[c.a];
+      SolverBody& b = bodies[c.b];
+      rub(c, a, b);  // first: what keeps apart has the last word
+      keepApart(c, a, b);
+    });
+  }
+}
+
+void ContactSolver::part(Constraint& c, SolverBody& a, SolverBody& b) const {
+  std::array<double, 2> rest{0.0, 0.0};
+  bool any = false;
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    const double separation = separationNow(c.normal, p, a, b);
+    const double v = c.normal.x() * (b.px - b.pw * p.armB.y() - a.px + a.pw * p.armA.y()) +
+                     c.normal.y() * (b.py + b.pw * p.armB.x() - a.py - a.pw * p.armA.x());
+    any = any || separation < 0.0 || v < 0.0;
+    rest[i] =
+        v + std::max(separation < 0.0 ? kPartShare * separation / settings_.h : separation / settings_.h, -c.pushLimit);
+  }
+  if (!any) return;
+  const std::array<double, 2> x = solvePoints(c, rest);
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    applyParting(c, p.armA, p.armB, x[i] * c.normal.x(), x[i] * c.normal.y(), a, b);
+  }
+}
+
+void ContactSolver::push(std::vector<SolverBody>& bodies, Crew& crew) {
+  forEachColour(crew, [&](Constraint& c) { part(c, bodies[c.a], bodies[c.b]); });
+}
+
+// Newton's law of restitution, against the approach before the impulses of the sub-step.
+void ContactSolver::bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const {
+  std::array<double, 2> rest{0.0, 0.0};
+  bool any = false;
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    const bool bounces = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 &&
+                         separationNow(c.normal, p, a, b) <= c.touching;
+    any = any || bounces;
+    rest[i] = normalVelocity(c.normal, p, a, b) + (bounces ? c.restitution * p.approach : 0.0) -
+              p.inverseNormalMass * p.normalImpulse;
+    if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
+  }
+  if (!any) return;
+  const std::array<double, 2> x = solvePoints(c, rest);
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    Point& p = c.points[i];
+    const double change = x[i] - p.normalImpulse;
+    p.normalImpulse = x[i];
+    p.normalSum += change;
+    apply(c, p.armA, p.armB, change * c.normal.x(), change * c.normal.y(), a, b);
+  }
+}
+
+void ContactSolver::bounce(std::vector<SolverBody>& bodies, Crew& crew) {
+  if (!anyFast_.load(std::memory_order_relaxed)) return;
+  forEachColour(crew, [&](Constraint& c) {
+    if (c.restitution > 0.0) bounceOne(c, bodies[c.a], bodies[c.b]);
+  });
 }
 
 ContactTotals ContactSolver::finish(const std::vector<SolverBody>& bodies, ContactList& list,

@@ -1,10 +1,11 @@
-// Keeps bodies apart and lets them rub: contacts as soft constraints, solved in small sub-steps.
+// Keeps bodies apart and lets them rub: contact impulses by one projected Gauss-Seidel iteration in each small
+// sub-step.
 //
-// E. Catto, "Soft constraints", GDC 2011 (the implicit spring); M. Macklin et al., "Small steps in physics simulation",
-// SCA 2019 (one iteration a sub-step); each sub-step is followed by a relaxation that takes the velocity out again
-// which pushing apart has put in.
+// M. Macklin et al., "Small steps in physics simulation", SCA 2019. What overlaps is parted by a velocity of its own
+// that does not outlive the sub-step, so that parting gives no energy and impulses do not answer to old errors.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include <froude/base/crew.h>
@@ -14,10 +15,11 @@ namespace froude {
 
 /// A body in the solver: its velocity, and how far it has come since the start of the step.
 struct alignas(64) SolverBody {
-  double vx = 0.0, vy = 0.0, w = 0.0;  // [m/s, rad/s]
-  double dx = 0.0, dy = 0.0;           // of the frame's origin [m]
-  double turn = 0.0;                   // [rad]
-  double c = 1.0, s = 0.0;             // of the turn
+  double vx = 0.0, vy = 0.0, w = 0.0;   // [m/s, rad/s]
+  double dx = 0.0, dy = 0.0;            // of the frame's origin [m]
+  double turn = 0.0;                    // [rad]
+  double c = 1.0, s = 0.0;              // of the turn
+  double px = 0.0, py = 0.0, pw = 0.0;  // that part what overlaps, in this sub-step only [m/s, rad/s]
 };
 
 /// What the contacts of a step gave to whom.
@@ -40,13 +42,14 @@ class ContactSolver {
   void prepare(const ContactList& list, const BodySet& bodies, const BodyPoses& poses,
                const std::vector<std::uint8_t>& awake, const Settings& settings);
 
-  // The parts of a sub-step. Bodies by index, the domain's last.
-  void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
+  // The parts of a sub-step, in order. Bodies by index, the domain's last.
   void warmStart(std::vector<SolverBody>& bodies, Crew& crew);
-  /// Velocities that part what overlaps, and let nothing come nearer than touching within the sub-step.
-  void push(std::vector<SolverBody>& bodies, Crew& crew) { solve(bodies, crew, true); }
-  /// Takes out what the push put in; bounces.
-  void relax(std::vector<SolverBody>& bodies, Crew& crew) { solve(bodies, crew, false); }
+  /// Lets nothing come nearer than touching within the sub-step.
+  void solve(std::vector<SolverBody>& bodies, Crew& crew);
+  /// Parts what overlaps.
+  void push(std::vector<SolverBody>& bodies, Crew& crew);
+  /// After the bodies have moved: what has met fast enough goes back.
+  void bounce(std::vector<SolverBody>& bodies, Crew& crew);
 
   /// Impulses back to the list; adds what bodies got to `onBody` (impulse x, y, moment about the centre of mass, by
   /// body).
@@ -58,7 +61,7 @@ class ContactSolver {
   struct Point {
     Vec2 armA, armB;    // from the frames' origins at the start of the step [m]
     double separation;  // at the start of the step, without what the arms contribute [m]
-    double normalMass, tangentMass;
+    double inverseNormalMass, tangentMass;
     double normalImpulse, tangentImpulse;
     double normalSum, tangentSum;  // over the sub-steps
     double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
@@ -68,7 +71,9 @@ class ContactSolver {
     double inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
     Vec2 normal;
     double friction, restitution, belt;  // belt: of the surfaces along the tangent [m/s]
-    double pushRate, pushLimit;          // [1/s], [m/s]
+    double touching;                     // [m]
+    double pushLimit;                    // [m/s]
+    double coupling;                     // of the two points' normal impulses [1/kg]
     std::array<Point, 2> points;
   };
   struct Colour {
@@ -80,11 +85,16 @@ class ContactSolver {
                             const BodyPoses& poses) const;
   template <typename Body>
   void forEachColour(Crew& crew, Body&& body);
-  void solve(std::vector<SolverBody>& bodies, Crew& crew, bool pushing);
-  void solveOne(Constraint& c, SolverBody* bodies, bool pushing) const;
+  void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
+  void rub(Constraint& c, SolverBody& a, SolverBody& b) const;
+  void keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
+  void part(Constraint& c, SolverBody& a, SolverBody& b) const;
+  void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
 
   Settings settings_;
-  bool anyBounces_ = false;
+  int iterations_ = 1;                   // a sub-step
+  bool anyBounces_ = false;              // any that could
+  std::atomic<bool> anyFast_{false};     // any that may in this sub-step
   std::vector<Constraint> constraints_;  // by colour
   std::vector<Colour> colours_;
   std::vector<std::uint32_t> active_, colourOf_, order_, start_;

@@ -100,6 +100,14 @@ void RigidSolver::wakeIslands(BodySet& bodies, RigidStats& stats) {
   }
 }
 
+// Bodies that touch nothing in this step.
+void RigidSolver::findFlying(const BodySet& bodies) {
+  flies_.assign(bodies.size() + 1, 1);
+  for (const Contact& c : list_.contacts()) {
+    if (c.count > 0) flies_[c.bodyA] = flies_[c.bodyB] = 0;
+  }
+}
+
 void RigidSolver::loadBodies(const BodySet& bodies) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     SolverBody& b = bodies_[i];
@@ -117,25 +125,31 @@ void RigidSolver::loadBodies(const BodySet& bodies) {
   bodies_.back() = {};
 }
 
+Vec2 RigidSolver::accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t i) const {
+  const SolverBody& b = bodies_[i];
+  return step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy)) +
+         bodies.mass(i).inverseMass * bodies.freeState(i).pressure;
+}
+
 void RigidSolver::integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats,
                                       Crew& crew) {
   crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (awake_[i] == 0) continue;
-      const FreeState& f = bodies.freeState(i);
-      const MassData& mass = bodies.mass(i);
       SolverBody& b = bodies_[i];
-      const Vec2 a = step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy)) + mass.inverseMass * f.pressure;
+      const Vec2 a = accelerationOf(step, bodies, i);
       b.vx += h * a.x();
       b.vy += h * a.y();
-      b.w += h * mass.inverseInertia * f.pressureTorque;
+      b.w += h * bodies.mass(i).inverseInertia * bodies.freeState(i).pressureTorque;
     }
   });
   // Booked apart, in the order of the bodies: the sum must not depend on threads.
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (awake_[i] == 0) continue;
     const SolverBody& b = bodies_[i];
-    stats.impulse += h * bodies.mass(i).mass * step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy));
+    const Vec2 impulse = h * bodies.mass(i).mass * step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy));
+    stats.impulse += impulse;
+    stats.gravityWork += impulse.dot(Vec2(b.vx, b.vy)) - 0.5 * bodies.mass(i).inverseMass * impulse.squaredNorm();
   }
 }
 
@@ -170,22 +184,28 @@ void RigidSolver::solveHinges(const BodySet& bodies, double h, bool last, RigidS
   }
 }
 
-void RigidSolver::integratePositions(const BodySet& bodies, double h, Crew& crew) {
+void RigidSolver::integratePositions(const RigidStep& step, const BodySet& bodies, double h, Crew& crew) {
   crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SolverBody& b = bodies_[i];
       if (poses_.still[i] != 0 && awake_[i] == 0) continue;
-      const Rotation turn = Rotation::of(b.turn + h * b.w);
+      const double w = b.w + b.pw;
+      const Rotation turn = Rotation::of(b.turn + h * w);
       if (bodies.definition(i).hinge) {
         const Vec2 start = poses_.pose[i].rotation.apply(bodies.hingeAnchor(i));
         const Vec2 moved = start - turn.apply(start);
         b.dx = moved.x(), b.dy = moved.y();
       } else {
-        b.dx += h * b.vx;
-        b.dy += h * b.vy;
+        b.dx += h * (b.vx + b.px);
+        b.dy += h * (b.vy + b.py);
+        if (flies_[i] != 0) {  // nothing but gravity acts: exactly on its parabola
+          const Vec2 back = 0.5 * h * h * accelerationOf(step, bodies, i);
+          b.dx -= back.x(), b.dy -= back.y();
+        }
       }
-      b.turn += h * b.w;
+      b.turn += h * w;
       b.c = turn.c, b.s = turn.s;
+      b.px = b.py = b.pw = 0.0;
     }
   });
 }
@@ -289,16 +309,17 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
     list_.update(bodies, poses_, crew);
     wakeIslands(bodies, stats);
     loadBodies(bodies);
+    findFlying(bodies);
     solver_.prepare(list_, bodies, poses_, awake_, {h, substeps, 2.0 * step.gravityScale * step.dt});
     for (int k = 0; k < substeps; ++k) {
       integrateVelocities(step, bodies, h, stats, crew);
-      solver_.noteApproach(bodies_, crew);
       solver_.warmStart(bodies_, crew);
       solveHinges(bodies, h, false, stats);
-      solver_.push(bodies_, crew);
+      solver_.solve(bodies_, crew);
       solveHinges(bodies, h, false, stats);
-      integratePositions(bodies, h, crew);
-      solver_.relax(bodies_, crew);
+      solver_.push(bodies_, crew);
+      integratePositions(step, bodies, h, crew);
+      solver_.bounce(bodies_, crew);
       solveHinges(bodies, h, true, stats);
     }
     const ContactTotals totals = solver_.finish(bodies_, list_, onBody_);

@@ -18,8 +18,9 @@ struct RigidStep {
 
 /// What a step gave to the free bodies from outside, and found.
 struct RigidStats {
-  Vec2 impulse{0, 0};  // of gravity, walls, fixed and scripted bodies, hinges [kg·m/s per metre]
-  double work = 0.0;   // of scripted bodies, belts and motors [J/m]
+  Vec2 impulse{0, 0};        // of gravity, walls, fixed and scripted bodies, hinges [kg·m/s per metre]
+  double work = 0.0;         // of scripted bodies, belts and motors [J/m]
+  double gravityWork = 0.0;  // [J/m]
   std::size_t contacts = 0, awake = 0, islands = 0;
 };
 
@@ -51,10 +52,12 @@ class RigidSolver {
   void admitBodies(const BodySet& bodies);
   void findPoses(const RigidStep& step, const BodySet& bodies);
   void wakeIslands(BodySet& bodies, RigidStats& stats);
+  void findFlying(const BodySet& bodies);
+  Vec2 accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t body) const;
   void loadBodies(const BodySet& bodies);
   void integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats, Crew& crew);
   void solveHinges(const BodySet& bodies, double h, bool last, RigidStats& stats);
-  void integratePositions(const BodySet& bodies, double h, Crew& crew);
+  void integratePositions(const RigidStep& step, const BodySet& bodies, double h, Crew& crew);
   void storeMotions(const RigidStep& step, BodySet& bodies);
   void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
   double impactOf(std::size_t body, const RigidStep& step, const BodySet& bodies) const;
@@ -66,7 +69,7 @@ class RigidSolver {
   ContactSolver solver_;
   BodyPoses poses_;
   std::vector<SolverBody> bodies_;
-  std::vector<std::uint8_t> awake_;
+  std::vector<std::uint8_t> awake_, flies_;
   std::vector<std::uint32_t> parent_, hinged_;
   std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
   std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment

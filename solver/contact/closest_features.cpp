@@ -1,0 +1,87 @@
+// The walk, and what follows where it comes to lie behind an edge: the best separating axis says whether that is
+// overlap, and if not, the walk goes on from there and has only a few steps left.
+#include <froude/solver/contact/closest_features.h>
+
+#include <froude/solver/contact/closest_pair.h>
+#include <froude/solver/contact/feature_walk.h>
+
+namespace froude {
+
+namespace {
+
+// Pairs whose best axis is nearer to 0 than this fraction of their extent touch, to rounding.
+constexpr double kTouching = 1e-12;
+
+// Touching within rounding, where arms have lost their direction: the axis is the answer. Its support may be one of
+// several vertices on a level edge; the one that touches lies in the slab of the axis's edge, or its own edge reaches
+// into it.
+template <bool kOfA>
+void touch(const PairFrame& pair, const SeparatingAxis& axis, ClosestFeatures& closest, PairCache& cache) {
+  const ConvexShape& self = pair.self<kOfA>();
+  const ConvexShape& other = pair.other<kOfA>();
+  const std::uint32_t edge = featureIndex(axis.edge);
+  const Vec2& n = self.normal(edge);
+  const double length = cross(n, self.vertex(self.next(edge)) - self.vertex(edge));
+  const double level = axis.separation + kTouching * pair.extent();
+  const auto along = [&](std::uint32_t v) { return cross(n, pair.armOf<kOfA>(edge, v)); };
+  std::uint32_t vertex = axis.support;
+  Feature feature = vertexFeature(vertex);
+  double at = along(vertex);
+  for (std::uint32_t step = 0; step < other.size() && (at < 0.0 || at > length); ++step) {
+    const bool upwards = at < 0.0;  // against the other's order of vertices, which faces ours
+    const std::uint32_t neighbour = upwards ? other.previous(vertex) : other.next(vertex);
+    if (n.dot(pair.armOf<kOfA>(edge, neighbour)) > level) break;
+    feature = edgeFeature(upwards ? neighbour : vertex);
+    vertex = neighbour;
+    const double reached = along(vertex);
+    if (upwards ? reached >= 0.0 : reached <= length) {
+      at = 0.5 * (std::clamp(at, 0.0, length) + std::clamp(reached, 0.0, length));
+    } else {
+      at = reached;
+    }
+  }
+  const Vec2 onSelf = self.vertex(edge) + std::clamp(at, 0.0, length) * leftNormal(n);
+  const Vec2 onOther = onSelf + axis.separation * n;
+  closest.status = axis.separation > 0.0 ? PairStatus::Apart : PairStatus::Near;
+  closest.distance = axis.separation;
+  closest.normal = axis.normal;
+  closest.onA = kOfA ? onSelf : pair.pose.toWorld(onOther);
+  closest.onB = kOfA ? onOther : pair.pose.toWorld(onSelf);
+  cache = kOfA ? PairCache{axis.edge, feature} : PairCache{feature, axis.edge};
+}
+
+void overlap(const SeparatingAxis& axis, ClosestFeatures& closest) {
+  closest.status = PairStatus::Overlapping;
+  closest.distance = 0.0;
+  closest.normal = axis.normal;
+}
+
+}  // namespace
+
+ClosestPair closestPair(const PairFrame& pair, PairCache& cache) {
+  ClosestPair answer;
+  ClosestFeatures& closest = answer.closest;
+  if (!pair.isFinite()) return answer;
+  const int limit = static_cast<int>(pair.a.size() + pair.b.size()) + 8;
+  if (walkFeatures(pair, cache, limit, closest) == WalkEnd::Found) return answer;
+
+  answer.axis = bestAxis(pair, cache, AxisChoice::Any);
+  if (!std::isfinite(answer.axis.separation)) return answer;
+  cache = featuresOf(answer.axis);
+  if (answer.axis.separation < 0.0) {
+    overlap(answer.axis, closest);
+  } else if (walkFeatures(pair, cache, limit, closest) == WalkEnd::Found) {
+    return answer;
+  } else if (answer.axis.separation <= kTouching * pair.extent()) {
+    answer.axis.ofA ? touch<true>(pair, answer.axis, closest, cache) : touch<false>(pair, answer.axis, closest, cache);
+  }
+  closest.a = cache.a;
+  closest.b = cache.b;
+  return answer;
+}
+
+ClosestFeatures closestFeatures(const ConvexShape& a, const ConvexShape& b, const Transform& bInA, PairCache& cache) {
+  return closestPair({a, b, bInA}, cache).closest;
+}
+
+}  // namespace froude
