@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -25,12 +26,29 @@ constexpr double kBar = 340.0;
 constexpr double kSmallestBullet = 1.25;  // radius
 constexpr double kSmallestDrop = 3.5;     // radius of a fluid's particle that is seen by itself [pixels]
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
-constexpr Color kScripted{184, 202, 222}, kFree{240, 204, 158};
-constexpr double kSmallestMarked = 4.0;  // radius of a free body whose turning is still seen [pixels]
+constexpr Color kScripted{184, 202, 222}, kFree{240, 204, 158}, kAsleep{249, 233, 212};
+constexpr double kSmallestMarked = 8.0;  // radius of a free body whose turning is still seen [pixels]
 constexpr double kHinge = 4.5;           // radius of its ring
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+/// The first stretch of the ray from a shape's centre of area along its own x axis that lies within it.
+std::array<Vec2, 2> markOf(const Polygon& shape) {
+  const Vec2 center = shape.centroid();
+  std::vector<double> crossings;
+  for (std::uint32_t i = 0; i < shape.edgeCount(); ++i) {
+    const Vec2 a = shape.edgeStart(i) - center, b = shape.edgeEnd(i) - center;
+    if ((a.y() > 0.0) == (b.y() > 0.0)) continue;
+    const double x = a.x() + (b.x() - a.x()) * a.y() / (a.y() - b.y());
+    if (x > 0.0) crossings.push_back(x);
+  }
+  std::sort(crossings.begin(), crossings.end());
+  const bool within = crossings.size() % 2 == 1;
+  if (crossings.empty()) return {center, center};
+  const double from = within ? 0.0 : crossings[0], to = crossings[within ? 0 : 1];
+  return {center + Vec2(from, 0.0), center + Vec2(to, 0.0)};
+}
 
 }  // namespace
 
@@ -139,7 +157,7 @@ void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
     if (motion == Motion::Fixed)
       setGrey(cr, kBody);
     else
-      setColor(cr, motion == Motion::Free ? kFree : kScripted);
+      setColor(cr, motion == Motion::Scripted ? kScripted : world.body(b).asleep ? kAsleep : kFree);
     cairo_fill_preserve(cr);  // holes run the other way round, so the winding rule leaves them out
     setGrey(cr, kDark);
     cairo_stroke(cr);
@@ -149,13 +167,11 @@ void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
   cairo_restore(cr);
 }
 
-/// What shows that a free body turns, and what holds it: a line from its centre of mass along its own x axis, a ring
-/// about its hinge.
+/// What shows that a free body turns, and what holds it: a line, a ring about its hinge.
 void PngPainter::drawMark(cairo_t* cr, const BodyDef& body, const Transform& transform) const {
   setGrey(cr, kDark);
-  const double radius = std::sqrt(body.shape->area() / kPi);
-  if (radius * pixels_ >= kSmallestMarked * unit_) {
-    const Vec2 from = body.shape->centroid(), to = from + Vec2(0.8 * radius, 0.0);
+  if (std::sqrt(body.shape->area() / kPi) * pixels_ >= kSmallestMarked * unit_) {
+    const auto [from, to] = markOf(*body.shape);
     const Vec2 a = toPixel(transform.toWorld(from)), b = toPixel(transform.toWorld(to));
     cairo_move_to(cr, a.x(), a.y());
     cairo_line_to(cr, b.x(), b.y());
