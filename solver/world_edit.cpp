@@ -180,7 +180,7 @@ ParticlePool& World::Impl::requirePool(Species species) const {
 
 // `present` is what the last sub-step left. What callers did since is work and impulse from outside.
 void World::Impl::admitEdits() {
-  static_cast<void>(solids());
+  if (obstaclesStale || anyParticles()) static_cast<void>(solids());
   if (!edited) return;
   edited = false;
   if (!started) return;

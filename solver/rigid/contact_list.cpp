@@ -8,7 +8,7 @@ namespace {
 constexpr double kSkin = 0.1;        // of a piece's outer radius: how far it may move before pairs are looked for anew
 constexpr double kStepsAhead = 3.0;  // and this many steps of its present travel
 constexpr double kLargestMargin =
-    0.5;  // of the thinner piece: what comes from farther is a matter of continuous motion
+    0.5;  // of the thinner body that moves: what comes from farther is a matter of continuous motion
 constexpr std::size_t kBlock = 64;
 constexpr std::uint64_t kWallKey = std::uint64_t{1} << 62;
 constexpr int kPieceBits = 24, kSlotBits = 30;
@@ -16,6 +16,12 @@ constexpr int kPieceBits = 24, kSlotBits = 30;
 bool contains(const Box& outer, const Box& inner) {
   return outer.min.x() <= inner.min.x() && outer.min.y() <= inner.min.y() && outer.max.x() >= inner.max.x() &&
          outer.max.y() >= inner.max.y();
+}
+
+// Where the box gets to as well.
+void extend(Box& box, const Vec2& way) {
+  const Box there{box.min + way, box.max + way};
+  box.include(there);
 }
 
 // The closed sides as boxes as deep as the domain is wide.
@@ -87,14 +93,19 @@ void ContactList::rebuild(const DomainDef& domain, const BodySet& bodies) {
     addPieces(shapeOf(bodies.shape(i)), static_cast<std::uint32_t>(i), key);
   }
   addPieces(*walls_, static_cast<std::uint32_t>(bodies.size()), kWallKey);
-  // Contacts are found again by their keys, so numbers are turned into keys' new numbers where they are still there.
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> numbers;
-  for (std::uint32_t p = 0; p < proxies_.size(); ++p) numbers.push_back({proxies_[p].key, p});
-  std::sort(numbers.begin(), numbers.end());
+  byKey_.resize(proxies_.size());
+  rank_.resize(proxies_.size());
+  for (std::uint32_t p = 0; p < proxies_.size(); ++p) byKey_[p] = p;
+  auto keyOf = [&](std::uint32_t p) { return proxies_[p].key; };
+  std::sort(byKey_.begin(), byKey_.end(), [&](std::uint32_t p, std::uint32_t q) { return keyOf(p) < keyOf(q); });
+  for (std::uint32_t k = 0; k < byKey_.size(); ++k) rank_[byKey_[k]] = k;
+  // Contacts outlast the numbers of their pieces.
   auto renumber = [&](std::uint32_t& proxy, std::uint32_t& body) {
-    const auto at = std::lower_bound(numbers.begin(), numbers.end(), std::pair(keys[proxy], std::uint32_t{0}));
-    if (at == numbers.end() || at->first != keys[proxy]) return false;
-    proxy = at->second;
+    const std::uint64_t key = keys[proxy];
+    const auto at = std::lower_bound(byKey_.begin(), byKey_.end(), key,
+                                     [&](std::uint32_t p, std::uint64_t value) { return keyOf(p) < value; });
+    if (at == byKey_.end() || keyOf(*at) != key) return false;
+    proxy = *at;
     body = proxies_[proxy].body;
     return true;
   };
@@ -109,7 +120,9 @@ void ContactList::findReach(const BodyPoses& poses, Crew& crew) {
   crew.stage(proxies_.size(), 4 * kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const Proxy& proxy = proxies_[p];
-      reach_[p] = proxy.shape->box(poses.pose[proxy.body]).grown(poses.travel[proxy.body]);
+      Box box = proxy.shape->box(poses.pose[proxy.body]);
+      extend(box, poses.drift[proxy.body]);
+      reach_[p] = box.grown(poses.spread[proxy.body]);
     }
   });
 }
@@ -140,43 +153,57 @@ void ContactList::sortAlongX() {
   }
 }
 
-// Sort and sweep along x. A wall or a floor, which overlaps all, costs one pass over all.
-void ContactList::pairAnew(const BodySet& bodies) {
+// A wall or a floor, which overlaps all, costs one pass over all.
+void ContactList::sweepAlongX(const BodySet& bodies) {
   sortAlongX();
-  candidates_.clear();
-  std::vector<Box> sorted;
-  sorted.reserve(order_.size());
-  for (const std::uint32_t p : order_) sorted.push_back(fat_[p]);
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const Box& box = sorted[i];
-    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].min.x() <= box.max.x(); ++j) {
-      if (sorted[j].min.y() > box.max.y() || sorted[j].max.y() < box.min.y()) continue;
-      std::uint32_t a = order_[i], b = order_[j];
+  sorted_.clear();
+  for (const std::uint32_t p : order_) sorted_.push_back(fat_[p]);
+  found_.clear();
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const Box box = sorted_[i];
+    for (std::size_t j = i + 1; j < sorted_.size() && sorted_[j].min.x() <= box.max.x(); ++j) {
+      if (sorted_[j].min.y() > box.max.y() || sorted_[j].max.y() < box.min.y()) continue;
+      const std::uint32_t a = order_[i], b = order_[j];
       if (!mayTouch(bodies, proxies_[a].body, proxies_[b].body)) continue;
-      if (proxies_[a].key > proxies_[b].key) std::swap(a, b);
-      candidates_.push_back({proxies_[a].key, proxies_[b].key, a, b});
+      found_.push_back(std::minmax(rank_[a], rank_[b]));
     }
   }
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& p, const Candidate& q) {
-    return p.keyA < q.keyA || (p.keyA == q.keyA && p.keyB < q.keyB);
-  });
+}
+
+// By the first's rank in one counting pass; each one's partners are few.
+void ContactList::sortByKey() {
+  start_.assign(proxies_.size() + 1, 0);
+  for (const auto& [a, b] : found_) ++start_[a + 1];
+  for (std::size_t p = 1; p < start_.size(); ++p) start_[p] += start_[p - 1];
+  partner_.resize(found_.size());
+  for (const auto& [a, b] : found_) partner_[start_[a]++] = b;
+  std::uint32_t begin = 0;
+  for (std::size_t p = 0; p < proxies_.size(); ++p) {
+    std::sort(partner_.begin() + begin, partner_.begin() + start_[p]);
+    begin = start_[p];
+  }
+}
+
+void ContactList::pairAnew(const BodySet& bodies) {
+  sweepAlongX(bodies);
+  sortByKey();
   before_.swap(contacts_);
   contacts_.clear();
   std::size_t old = 0;
-  for (const Candidate& c : candidates_) {
-    auto isBefore = [&](const Contact& k) {
-      const std::uint64_t keyA = proxies_[k.a].key, keyB = proxies_[k.b].key;
-      return keyA < c.keyA || (keyA == c.keyA && keyB < c.keyB);
-    };
-    while (old < before_.size() && isBefore(before_[old])) ++old;
-    if (old < before_.size() && before_[old].a == c.a && before_[old].b == c.b) {
-      contacts_.push_back(before_[old]);
-      continue;
+  std::uint32_t k = 0;
+  for (std::uint32_t first = 0; first < proxies_.size(); ++first) {
+    for (; k < start_[first]; ++k) {
+      const std::pair<std::uint32_t, std::uint32_t> pair(first, partner_[k]);
+      auto ranks = [&](const Contact& c) { return std::pair(rank_[c.a], rank_[c.b]); };
+      while (old < before_.size() && ranks(before_[old]) < pair) ++old;
+      if (old < before_.size() && ranks(before_[old]) == pair) {
+        contacts_.push_back(before_[old]);
+        continue;
+      }
+      Contact& contact = contacts_.emplace_back();
+      contact.a = byKey_[pair.first], contact.b = byKey_[pair.second];
+      contact.bodyA = proxies_[contact.a].body, contact.bodyB = proxies_[contact.b].body;
     }
-    Contact contact;
-    contact.a = c.a, contact.b = c.b;
-    contact.bodyA = proxies_[c.a].body, contact.bodyB = proxies_[c.b].body;
-    contacts_.push_back(contact);
   }
 }
 
@@ -188,8 +215,9 @@ void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
   const ConvexShape& a = shape(contact.a);
   const ConvexShape& b = shape(contact.b);
   const Transform& frame = poses.pose[contact.bodyA];
-  const double margin = std::min(poses.travel[contact.bodyA] + poses.travel[contact.bodyB],
-                                 kLargestMargin * std::min(a.innerRadius(), b.innerRadius()));
+  const double margin =
+      std::min(poses.closing(contact.bodyA, contact.bodyB),
+               kLargestMargin * std::min(poses.thickness[contact.bodyA], poses.thickness[contact.bodyB]));
   const ContactManifold m = contactManifold(a, b, poseIn(frame, poses.pose[contact.bodyB]), margin, contact.cache);
   contact.count = m.count;
   contact.normal = frame.rotation.apply(m.normal);
@@ -210,8 +238,10 @@ void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& cr
     for (std::size_t p = 0; p < proxies_.size(); ++p) {
       const Proxy& proxy = proxies_[p];
       const bool wall = proxy.body == bodies.size();
-      fat_[p] = wall ? reach_[p]
-                     : reach_[p].grown(kSkin * proxy.shape->outerRadius() + kStepsAhead * poses.travel[proxy.body]);
+      fat_[p] = reach_[p];
+      if (wall) continue;
+      extend(fat_[p], kStepsAhead * poses.drift[proxy.body]);
+      fat_[p] = fat_[p].grown(kSkin * proxy.shape->outerRadius() + poses.spread[proxy.body]);
     }
     pairAnew(bodies);
     stale_ = false;

@@ -39,8 +39,15 @@ struct Contact {
 /// Where the bodies are at the start of a step, and how far each may get.
 struct BodyPoses {
   std::vector<Transform> pose;      // by body; the domain's last
-  std::vector<double> travel;       // of any of its points in the step [m]
+  std::vector<Vec2> drift;          // of the frame's origin in the step [m]
+  std::vector<double> spread;       // how far any of its points may be from where the drift takes it [m]
+  std::vector<double> thickness;    // of bodies that contacts move, else infinite [m]
   std::vector<std::uint8_t> still;  // asleep, or never moved by contacts
+
+  /// How much nearer to each other two bodies may come in the step [m].
+  double closing(std::uint32_t a, std::uint32_t b) const {
+    return (drift[b] - drift[a]).norm() + spread[a] + spread[b];
+  }
 };
 
 /// Contacts in the order of their keys, whatever history led to them. Sleepers keep theirs as they are.
@@ -80,6 +87,8 @@ class ContactList {
   void findReach(const BodyPoses& poses, Crew& crew);
   bool leftItsBox() const;
   void pairAnew(const BodySet& bodies);
+  void sweepAlongX(const BodySet& bodies);
+  void sortByKey();
   void sortAlongX();
   void collide(Contact& contact, const BodyPoses& poses) const;
 
@@ -90,12 +99,11 @@ class ContactList {
   std::vector<double> thickness_;
   std::vector<Box> reach_, fat_;  // by proxy
   std::vector<Contact> contacts_, before_;
-  std::vector<std::uint32_t> order_;  // proxies along x
-  struct Candidate {
-    std::uint64_t keyA, keyB;
-    std::uint32_t a, b;
-  };
-  std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> order_;         // proxies along x
+  std::vector<std::uint32_t> byKey_, rank_;  // proxies by key, and each one's place there
+  std::vector<Box> sorted_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  // ranks
+  std::vector<std::uint32_t> start_, partner_;
   bool stale_ = true;  // boxes are to be made anew
 };
 

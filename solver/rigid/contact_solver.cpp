@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kBlock = 32;      // contacts a task
 constexpr std::uint32_t kColours = 32;  // between free bodies; as many again with what does not give way
 constexpr double kPartShare = 0.4;      // of an overlap that a sub-step takes away
-constexpr int kColdIterations = 50;     // where most points are new: nothing is known of what they bear
+constexpr int kColdIterations = 50;     // where no point bears anything yet: a scene's start
 constexpr double kTouching = 2e-5;      // thicknesses apart that count as touching
 constexpr double kPushLimit = 20.0;     // thicknesses of the thinner body a second
 
@@ -112,14 +112,13 @@ void ContactSolver::prepare(const ContactList& list, const BodySet& bodies, cons
   colour(active_, list, awake);
   constraints_.resize(order_.size());
   anyBounces_ = false;
-  std::size_t points = 0, cold = 0;
+  bool cold = true;
   for (std::size_t k = 0; k < order_.size(); ++k) {
     const Constraint& c = constraints_[k] = makeConstraint(order_[k], list, bodies, poses);
     anyBounces_ = anyBounces_ || c.restitution > 0.0;
-    for (std::uint32_t i = 0; i < c.count; ++i) cold += c.points[i].normalImpulse == 0.0;
-    points += c.count;
+    for (std::uint32_t i = 0; i < c.count; ++i) cold = cold && c.points[i].normalImpulse == 0.0;
   }
-  iterations_ = 2 * cold > points ? kColdIterations : 1;
+  iterations_ = cold ? kColdIterations : 1;
 }
 
 template <typename Body>

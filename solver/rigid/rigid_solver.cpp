@@ -13,7 +13,7 @@ constexpr std::size_t kCrewFrom = 64;     // contacts that are worth a second th
 // Of √(g·size): slower than this for so long, a body may sleep.
 constexpr double kStillSpeed = 0.01;
 constexpr double kStillTime = 0.5;  // [s]
-constexpr double kFast = 0.5;       // thicknesses a step from which on a body's way is followed
+constexpr double kFast = 0.5;       // thicknesses that a pair comes nearer in a step, from which on it is followed
 constexpr double kSlop = 1e-3;      // of the thickness: contacts are found this much before they touch
 
 int substepsFor(double dt) { return std::max(1, static_cast<int>(std::ceil(dt / kSubstep - 1e-6))); }
@@ -26,13 +26,14 @@ void RigidSolver::admitBodies(const BodySet& bodies) {
   list_.rebuild(domain_, bodies);
   const std::size_t n = bodies.size() + 1;
   poses_.pose.assign(n, Transform());
-  poses_.travel.assign(n, 0.0);
+  poses_.drift.assign(n, Vec2(0.0, 0.0));
+  poses_.spread.assign(n, 0.0);
+  poses_.thickness.assign(n, kInfinity);
   poses_.still.assign(n, 1);
   bodies_.assign(n, {});
   awake_.assign(n, 0);
   onBody_.assign(n, {0.0, 0.0, 0.0});
   felt_.assign(n, {});
-  impact_.assign(n, 1.0);
   hinged_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies.definition(i).hinge) hinged_.push_back(static_cast<std::uint32_t>(i));
@@ -49,13 +50,15 @@ void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies) {
     const FreeState& f = bodies.freeState(i);
     const Vec2 v = free ? f.velocity : m.velocity;
     const double w = free ? f.spin : m.spin;
-    const double speed = v.norm() + std::abs(w) * bodies.radius(i);
     awake_[i] = free && f.asleep == 0.0;
-    const bool moves = free ? awake_[i] != 0 : speed > 0.0;
+    const bool moves = free ? awake_[i] != 0 : v.squaredNorm() > 0.0 || w != 0.0;
     poses_.still[i] = moves ? 0 : 1;
-    const double slop = kSlop * list_.thickness(i);
-    poses_.travel[i] =
-        free && !moves ? slop : slop + step.dt * (speed + 2.0 * (free ? step.gravityScale : 0.0) * step.dt);
+    poses_.thickness[i] = free ? list_.thickness(i) : kInfinity;
+    poses_.drift[i] = moves ? Vec2(step.dt * v) : Vec2(0.0, 0.0);
+    poses_.spread[i] = kSlop * list_.thickness(i);
+    if (!moves) continue;
+    poses_.spread[i] += step.dt * std::abs(w) * bodies.radius(i);
+    if (free) poses_.spread[i] += 2.0 * step.gravityScale * step.dt * step.dt;
   }
 }
 
@@ -225,45 +228,44 @@ void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies) {
   }
 }
 
-// The share of the step up to which a fast body is free; its contacts of this step are the contact solver's matter.
-double RigidSolver::impactOf(std::size_t body, const RigidStep& step, const BodySet& bodies) const {
+// Pairs that come nearer to each other in the step than their contacts foresee are followed to where they meet, and
+// what is fast stops there until the next step. Pairs in contact are the contact solver's matter.
+void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew) {
+  fastPairs_.clear();
+  const std::vector<Contact>& contacts = list_.contacts();
+  for (std::uint32_t k = 0; k < contacts.size(); ++k) {
+    const Contact& c = contacts[k];
+    if (c.count > 0 || (awake_[c.bodyA] == 0 && awake_[c.bodyB] == 0)) continue;
+    const double thin = std::min(poses_.thickness[c.bodyA], poses_.thickness[c.bodyB]);
+    if (poses_.closing(c.bodyA, c.bodyB) < kFast * thin || !list_.reach(c.a).overlaps(list_.reach(c.b))) continue;
+    fastPairs_.push_back({k, step.dt});
+  }
+  if (fastPairs_.empty()) return;
   auto motionOf = [&](std::uint32_t i) {
     if (i == bodies.size()) return RigidMotion{Transform(), {0.0, 0.0}, 0.0};
     const BodyMotion& m = bodies.motion(i);
-    return RigidMotion{m.transform(), m.velocity, m.spin};
+    return RigidMotion{poses_.pose[i], m.velocity, m.spin};
   };
-  const auto self = static_cast<std::uint32_t>(body);
-  double first = step.dt;
-  for (const Contact& c : list_.contacts()) {
-    if ((c.bodyA != self && c.bodyB != self) || c.count > 0) continue;
-    const ConvexShape& a = list_.shape(c.a);
-    const ConvexShape& b = list_.shape(c.b);
-    const double target = kSlop * std::min(a.innerRadius(), b.innerRadius());
-    const TimeOfImpact impact = timeOfImpact(a, motionOf(c.bodyA), b, motionOf(c.bodyB), first, target);
-    const bool stops = impact.status == ImpactStatus::Hit || impact.status == ImpactStatus::Failed;
-    if (stops && impact.time < first) first = impact.time;
-  }
-  return first / step.dt;
-}
-
-void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew) {
-  auto isFast = [&](std::size_t i) {
-    if (awake_[i] == 0 || bodies.definition(i).hinge) return false;
-    const BodyMotion& m = bodies.motion(i);
-    return step.dt * (m.velocity.norm() + std::abs(m.spin) * bodies.radius(i)) > kFast * list_.thickness(i);
-  };
-  bool any = false;
-  for (std::size_t i = 0; i < bodies.size() && !any; ++i) any = bodies.isFree(i) && isFast(i);
-  if (!any) return;
-  crew.stage(bodies.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      impact_[i] = bodies.isFree(i) && isFast(i) ? impactOf(i, step, bodies) : 1.0;
+  crew.stage(fastPairs_.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const Contact& c = contacts[fastPairs_[k].contact];
+      const ConvexShape& a = list_.shape(c.a);
+      const ConvexShape& b = list_.shape(c.b);
+      const double target = kSlop * std::min(a.innerRadius(), b.innerRadius());
+      const TimeOfImpact impact = timeOfImpact(a, motionOf(c.bodyA), b, motionOf(c.bodyB), step.dt, target);
+      const bool stops = impact.status == ImpactStatus::Hit || impact.status == ImpactStatus::Failed;
+      if (stops) fastPairs_[k].time = impact.time;
     }
   });
+  impact_.assign(bodies.size() + 1, step.dt);
+  for (const FastPair& pair : fastPairs_) {
+    const Contact& c = contacts[pair.contact];
+    for (const std::uint32_t i : {c.bodyA, c.bodyB}) impact_[i] = std::min(impact_[i], pair.time);
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (impact_[i] >= 1.0) continue;
+    if (impact_[i] >= step.dt || awake_[i] == 0 || bodies.definition(i).hinge) continue;
     const BodyMotion& m = bodies.motion(i);
-    bodies.setMotion(i, impact_[i] * m.velocity, impact_[i] * m.spin);
+    bodies.setMotion(i, impact_[i] / step.dt * m.velocity, impact_[i] / step.dt * m.spin);
   }
 }
 

@@ -60,7 +60,6 @@ class RigidSolver {
   void integratePositions(const RigidStep& step, const BodySet& bodies, double h, Crew& crew);
   void storeMotions(const RigidStep& step, BodySet& bodies);
   void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
-  double impactOf(std::size_t body, const RigidStep& step, const BodySet& bodies) const;
   void fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats);
   std::uint32_t rootOf(std::uint32_t body);
 
@@ -74,7 +73,12 @@ class RigidSolver {
   std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
   std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment
   std::vector<BodyImpulse> felt_;
-  std::vector<double> impact_;  // share of the step at which a fast body meets something, by body
+  struct FastPair {
+    std::uint32_t contact;
+    double time;  // of impact [s]
+  };
+  std::vector<FastPair> fastPairs_;
+  std::vector<double> impact_;  // the first, by body [s]
   std::vector<std::uint8_t> islandMayRest_;
   std::uint64_t version_ = ~std::uint64_t{0};  // of the bodies that the list was built from
 };
