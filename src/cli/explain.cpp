@@ -89,8 +89,9 @@ void sortFreeBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item
     return;
   }
   in.push_back({plural(free, "free polygon", "free polygons"),
-                "`motion` is \"free\": gravity, contacts, particles and fluid move them; the contact solver takes soft "
-                "contacts with friction and restitution, sub-stepped, and lets what rests sleep",
+                "`motion` is \"free\": gravity, contacts, particles and fluid move them; contacts have friction and "
+                "restitution and "
+                "are solved in small sub-steps, and what rests falls asleep",
                 findModelCard("rigid")});
   const auto hinged = std::count_if(def.bodies.begin(), def.bodies.end(), [](const BodyDef& b) { return b.hinge; });
   const auto driven =
