@@ -83,7 +83,8 @@ Estimate estimate(const Scene& scene) {
   result.speed = expectedSpeed(scene, true);
   for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
   result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
-  constexpr double kBodyBytes = 2000.0;  // its definition, motion, own field and contacts; shapes are shared
+  // Peak resident memory of the program with 10,000 boxes, fixed, scripted or free: 9.5 to 10 kB each.
+  constexpr double kBodyBytes = 1e4;
   result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount())) +
                  kBodyBytes * static_cast<double>(world.bodies.size());
   result.bounds = boundsOf(scene, gravity);
