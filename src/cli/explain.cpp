@@ -97,8 +97,8 @@ void sortFreeBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item
   const auto driven =
       std::count_if(def.bodies.begin(), def.bodies.end(), [](const BodyDef& b) { return b.hinge && b.hinge->motor; });
   if (hinged > 0) {
-    in.push_back({fmt::format("{}, {} of them with a motor",
-                              plural(static_cast<std::size_t>(hinged), "hinge", "hinges"), driven),
+    in.push_back({fmt::format("{}, {}", plural(static_cast<std::size_t>(hinged), "hinge", "hinges"),
+                              driven > 0 ? plural(static_cast<std::size_t>(driven), "motor", "motors") : "no motor"),
                   "`hinge` holds a point of a free body where it is in the world"});
   } else {
     out.push_back({"hinges and motors", "no body has a `hinge`"});
