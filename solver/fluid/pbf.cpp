@@ -96,7 +96,10 @@ Pbf::PressureScale Pbf::pressureScale(const ParticlePool& pool) const {
 }
 
 void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
-  if (pool.empty()) return;
+  if (pool.empty()) {
+    if (context.freeBodies != nullptr) context.freeBodies->releaseAll();
+    return;
+  }
   resizeScratch(pool.size());
   largestPressure_ = pressureScale(pool).largest;
   predict(context, pool, impulses, stats);  // lines 1–4
@@ -192,6 +195,8 @@ void Pbf::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
+  bodies_.begin(context.freeBodies, walls_, {predictedX_.data(), n}, {predictedY_.data(), n}, dx_, particleMass(),
+                particleMass() * dx_ / context.dt);
 }
 
 PairFrame Pbf::frame() const {
@@ -209,7 +214,8 @@ PairFrame Pbf::frame() const {
 double Pbf::runDensity(const StepContext& context, float* density, float* diagonal, const PressureUpdate& update) {
   const PairFrame pairs = frame();
   const bool any = walls_.any();
-  const DensityLoop loop{any ? walls_.lambda() : nullptr,
+  const float* lambda = bodies_.any() ? bodies_.lambda() : walls_.lambda();
+  const DensityLoop loop{any ? lambda : nullptr,
                          walls_.gradientX(),
                          walls_.gradientY(),
                          shiftX_.data(),
@@ -269,17 +275,21 @@ void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats
   const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
                               static_cast<float>(kRelaxation)};
   double excess = runDensity(context, density.data(), diagonal_.data(), update);
+  bodies_.holdBack(diagonal_.data());
   int sweep = 0;
   const auto count = static_cast<double>(pool.size());
   if (fresh && excess / count > kTolerance) {
     liftFromCoarse(context, pool);
     runDisplacement(context, change_.data(), kappa_.data());
+    bodies_.follow(kappa_.data(), walls_);
     excess = runDensity(context, density.data(), nullptr, update);
   }
   for (; !solved(excess / count, sweep, fresh); ++sweep) {
     runDisplacement(context, change_.data(), kappa_.data());
+    bodies_.follow(kappa_.data(), walls_);
     excess = runDensity(context, density.data(), nullptr, update);
   }
+  bodies_.settle(kappa_.data());
   stats.sweeps = sweep + 1;
   stabilize(context, pool);
   judgeDensity(context, pool, stats);

@@ -8,6 +8,7 @@
 #include <froude/base/aligned.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/contact_log.h>
+#include <froude/solver/fluid/body_response.h>
 #include <froude/solver/fluid/coarse_pressure.h>
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/pair_loops.h>
@@ -64,6 +65,7 @@ class Pbf final : public FluidModel {
   ColumnId<float> pressure_, density_;
   CellGrid grid_;
   WallLayer walls_;
+  BodyResponse bodies_;
   CoarsePressure coarse_;
   std::vector<std::uint32_t> occupied_;
   AlignedArray<CellRuns> runs_;

@@ -183,6 +183,68 @@ std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare>
   return count;
 }
 
+// Each edge's wedge reaches from the edge to infinity: those of the faces that look away take off what is not solid.
+std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares) {
+  std::size_t count = 0;
+  for (const WallEdge& e : edges) {
+    const bool front = cross(e.a, e.b) < 0.0;
+    Wedge wedge = front ? integrateWedge(e.b, e.a) : integrateWedge(e.a, e.b);
+    if (!front) wedge = {-wedge.lambda, -wedge.gradient};
+    addShare(shares, count, e.owner, wedge);
+  }
+  return count;
+}
+
+namespace {
+
+constexpr double kSharpest = 0.766;  // cosine of 40 degrees
+constexpr double kInset = 0.5;       // how far from its ends a face is looked at [dx]
+
+// How far along u from m, less than the support radius, is the edge? Infinity if it is not met.
+double rayToEdge(const Vec2& m, const Vec2& u, const WallEdge& e) {
+  const Vec2 along = e.b - e.a;
+  const double denominator = cross(u, along);
+  if (denominator == 0.0) return kInfinity;
+  const double s = cross(e.a - m, along) / denominator;
+  const double t = cross(e.a - m, u) / denominator;
+  return s > 0.0 && s < kReach && t >= 0.0 && t <= 1.0 ? s : kInfinity;
+}
+
+bool isThinBehind(const WallEdge& away, std::span<const WallEdge> edges) {
+  const Vec2 along = away.b - away.a;
+  const double length = along.norm();
+  const Vec2 direction = along / length;
+  const double inset = std::min(kInset, 0.5 * length);
+  const Vec2 m = away.a + std::clamp(-away.a.dot(direction), inset, length - inset) * direction;
+  for (const WallEdge& e : edges) {
+    if (&e == &away || e.owner != away.owner || rayToEdge(m, leftNormal(direction), e) == kInfinity) continue;
+    const bool follows = e.a == away.b, precedes = e.b == away.a;
+    if (!follows && !precedes) return true;
+    // Neighbours at a sharp corner run nearly back on each other.
+    if (-direction.dot((e.b - e.a).normalized()) > kSharpest) return true;
+  }
+  return false;
+}
+
+bool edgesCross(const WallEdge& e, const WallEdge& f) {
+  auto side = [](const WallEdge& line, const Vec2& p) { return cross(line.b - line.a, p - line.a); };
+  return side(e, f.a) * side(e, f.b) < 0.0 && side(f, e.a) * side(f, e.b) < 0.0;
+}
+
+}  // namespace
+
+bool anyThin(std::span<const WallEdge> edges) {
+  for (const WallEdge& e : edges) {
+    if (cross(e.a, e.b) > 0.0 && isThinBehind(e, edges)) return true;
+  }
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (std::size_t j = i + 1; j < edges.size(); ++j) {
+      if (edges[i].owner != edges[j].owner && edgesCross(edges[i], edges[j])) return true;
+    }
+  }
+  return false;
+}
+
 HalfPlane halfPlane(double distance) {
   static const Table table;
   const double x = std::abs(distance) * (kTableSize / kReach);

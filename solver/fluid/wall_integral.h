@@ -38,6 +38,14 @@ inline constexpr std::size_t kMaxWallEdges = 64;
 /// Accuracy: closed forms in double, 1e-13 of λ.
 std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares);
 
+/// The same of the solids alone: what they hide is not counted. All edges within the support radius, faces that look
+/// away too; where solids overlap, both count. Cost: O(k). Accuracy as above.
+std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares);
+
+/// Is there a solid so thin that the fluid behind it must be hidden? Edges as above. Thin is a solid whose opposite
+/// faces are nearer than the support radius, or a corner sharper than 40 degrees; also solids of two owners that cross.
+bool anyThin(std::span<const WallEdge> edges);
+
 /// λ and −dλ/dd of a half-plane at signed distance d spacings from its edge (d > 0 outside), from a table of cubic
 /// interpolation; error below 1e-9 (tested). Outside |d| < 2: 0 or 1.
 struct HalfPlane {

@@ -19,9 +19,9 @@ constexpr double kLongestMiter = 4.0;      // of the recession, at needles
 
 Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized(); }
 
-// Moves each edge that faces the particle into its solid by the recession, edges that share a vertex together, and
-// drops the others. Returns how many are left.
-std::size_t recede(std::span<WallEdge> edges) {
+// Moves each edge into its solid by the recession, edges that share a vertex together. Those that look away from the
+// particle are dropped unless `all` are asked for. Returns how many are left.
+std::size_t recede(std::span<WallEdge> edges, bool all) {
   std::array<Vec2, kMaxWallEdges> startShift, endShift;
   for (std::size_t i = 0; i < edges.size(); ++i) startShift[i] = endShift[i] = -kRecession * outwardNormal(edges[i]);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -38,7 +38,7 @@ std::size_t recede(std::span<WallEdge> edges) {
   // one.
   std::size_t front = 0;
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (cross(edges[i].a, edges[i].b) >= 0.0) continue;
+    if (!all && cross(edges[i].a, edges[i].b) >= 0.0) continue;
     edges[front++] = {edges[i].a + startShift[i], edges[i].b + endShift[i], edges[i].owner};
   }
   return front;
@@ -101,16 +101,20 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
       obstacles.edgesNear({x[i], y[i]}, kernel::kSupport * spacing_, spacing_, filter_, {buffer.data(), buffer.size()});
   if (n == 0) return;
   const std::span<const WallEdge> edges(buffer.data(), n);
-  // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be.
+  // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be. Round a
+  // corner of a thick solid neighbours are felt: the two sides are one fluid there, and a pair that appears when the
+  // corner no longer hides it is a blow.
   bool facesAway = false;
   for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
-  if (facesAway) findHidden(edges, grid, x, y, i, block);
+  const bool thick = facesAway && !anyThin(edges);
+  if (facesAway && !thick) findHidden(edges, grid, x, y, i, block);
   std::array<WallEdge, kMaxWallEdges> whole;
   const bool drag = obstacles.anySticks();
   if (drag) std::copy_n(buffer.begin(), n, whole.begin());
-  const std::size_t front = recede({buffer.data(), n});
+  const std::size_t front = recede({buffer.data(), n}, thick);
   std::array<WallShare, kMaxWallEdges> shares;
-  const std::size_t owners = integrateWalls({buffer.data(), front}, shares);
+  const std::size_t owners =
+      thick ? integrateSolids({buffer.data(), front}, shares) : integrateWalls({buffer.data(), front}, shares);
   for (std::size_t k = 0; k < owners; ++k) {
     const WallShare& share = shares[k];
     lambda_[i] += static_cast<float>(share.lambda);

@@ -1,0 +1,61 @@
+// Free bodies inside the pressure iterations: how far a fluid's pressures move the bodies that it touches, and what
+// that changes for the fluid's densities.
+#pragma once
+
+#include <vector>
+
+#include <froude/base/aligned.h>
+#include <froude/solver/coupling/free_bodies.h>
+#include <froude/solver/fluid/wall_layer.h>
+
+namespace froude {
+
+/// Bodies and pressures are two unknowns of one saddle-point problem. The pressures are swept as before; the bodies'
+/// displacements q follow the impulse of the pressures, M q = Σ 2κ G, and are held back by what the fluid will answer:
+/// q += (M + K)⁻¹ (Σ 2κ G − M q), K = Σ 2 G Gᵀ/diagonal (a preconditioned Uzawa iteration). Without K a body much
+/// lighter than the fluid that it moves is thrown to and fro. G is a particle's wall gradient and its moment about the
+/// centre of mass. All lengths in spacings dx; masses in particles' masses.
+class BodyResponse {
+ public:
+  /// Takes the links of `walls` to free bodies, at the start of a pressure solve. `unit` [kg·m/s]: the impulse of a
+  /// displacement by dx of one particle, mass·dx/dt. Bodies without links stay where they are expected to be.
+  void begin(FreeBodies* bodies, const WallLayer& walls, std::span<const double> x, std::span<const double> y,
+             double spacing, double mass, double unit);
+  bool any() const { return !links_.empty(); }
+
+  /// After the diagonal of the pressure system is known: what holds the bodies back.
+  void holdBack(const float* diagonal);
+  /// One step towards where the pressures κ bring the bodies; writes the walls' λ as the fluid now sees it.
+  void follow(const float* kappa, const WallLayer& walls);
+  /// λ by particle; the walls' own where no body has moved.
+  const float* lambda() const { return lambda_.data(); }
+  /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left.
+  void settle(const float* kappa);
+
+ private:
+  struct Link {
+    std::uint32_t particle;
+    std::uint32_t body;  // into bodies_
+    double x, y, moment;
+  };
+  struct Body {
+    int owner;
+    std::optional<Vec2> arm;         // from its hinge to its centre of mass
+    double mass, inertia;            // about the centre of mass
+    Wrench expected{0.0, 0.0, 0.0};  // impulse that its motion has already
+    std::array<double, 6> hold{};    // K: xx, xy, yy, xm, ym, mm
+    Wrench moved{0.0, 0.0, 0.0};     // q
+  };
+  void sumImpulses(const float* kappa);
+  static void step(Body& body, const Wrench& impulse);
+
+  FreeBodies* bodies_ = nullptr;
+  std::vector<Body> touched_;
+  std::vector<Link> links_;            // by particle
+  std::vector<std::int32_t> indexOf_;  // of each owner in touched_, −1
+  std::vector<Wrench> sums_;
+  AlignedArray<float> lambda_;
+  double spacing_ = 1.0, unit_ = 1.0;
+};
+
+}  // namespace froude
