@@ -82,6 +82,31 @@ void sortBullets(const scene::Scene& scene, std::vector<Item>& in, std::vector<I
                 "the scene has bullets: their paths are swept against the polygons", findModelCard("ballistic")});
 }
 
+void sortFreeBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out) {
+  const std::size_t free = bodiesThat(def, Motion::Free);
+  if (free == 0) {
+    out.push_back({"contacts between bodies", "no body has motion = \"free\": no contact solver"});
+    return;
+  }
+  in.push_back({plural(free, "free polygon", "free polygons"),
+                "`motion` is \"free\": gravity, contacts, particles and fluid move them; contacts have friction and "
+                "restitution and "
+                "are solved in small sub-steps, and what rests falls asleep",
+                findModelCard("rigid")});
+  const auto hinged = std::count_if(def.bodies.begin(), def.bodies.end(), [](const BodyDef& b) { return b.hinge; });
+  const auto driven =
+      std::count_if(def.bodies.begin(), def.bodies.end(), [](const BodyDef& b) { return b.hinge && b.hinge->motor; });
+  if (hinged > 0) {
+    in.push_back({fmt::format("{}, {}", plural(static_cast<std::size_t>(hinged), "hinge", "hinges"),
+                              driven > 0 ? plural(static_cast<std::size_t>(driven), "motor", "motors") : "no motor"),
+                  "`hinge` holds a point of a free body where it is in the world"});
+  } else {
+    out.push_back({"hinges and motors", "no body has a `hinge`"});
+  }
+  out.push_back({"contacts among fixed and scripted bodies", "neither would move by them"});
+  out.push_back({"joints between bodies, springs, breaking", "the scene format has hinges to the world only"});
+}
+
 void sortBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out) {
   const std::size_t fixed = bodiesThat(def, Motion::Fixed), scripted = bodiesThat(def, Motion::Scripted);
   if (def.bodies.empty()) out.push_back({"bodies", "the scene has none"});
@@ -90,9 +115,7 @@ void sortBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& o
         {plural(fixed, "fixed polygon", "fixed polygons"), "they are baked into one field: one look-up for all"});
   }
   if (scripted > 0) in.push_back({plural(scripted, "scripted polygon", "scripted polygons"), "their motion is given"});
-  if (bodiesThat(def, Motion::Free) == 0) {
-    out.push_back({"contacts between bodies", "no body has motion = \"free\": no contact solver"});
-  }
+  sortFreeBodies(def, in, out);
   out.push_back({"soft bodies", "the scene has none"});
 }
 
@@ -109,10 +132,19 @@ void sortRest(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out
   if (!def.gravityField && def.gravity.norm() == 0.0) out.push_back({"gravity", "`gravity` is 0"});
 }
 
+// What the library refuses of a scene is wrong in the scene.
+World worldOf(const scene::Scene& scene) {
+  try {
+    return scene::makeWorld(scene);
+  } catch (const Error& e) {
+    throw run::UsageError(scene.file + ": " + e.what());
+  }
+}
+
 // Steps a world that is thrown away; a mean over its first moments, without the very first sub-step, which allocates.
 double measuredSubstep(const scene::Scene& scene) {
   using Clock = std::chrono::steady_clock;
-  World world = scene::makeWorld(scene);
+  World world = worldOf(scene);
   if (!world.substep().ok()) return 0.0;
   const Clock::time_point start = Clock::now();
   double elapsed = 0.0;

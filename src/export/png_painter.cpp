@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -25,9 +26,29 @@ constexpr double kBar = 340.0;
 constexpr double kSmallestBullet = 1.25;  // radius
 constexpr double kSmallestDrop = 3.5;     // radius of a fluid's particle that is seen by itself [pixels]
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
+constexpr Color kScripted{184, 202, 222}, kFree{240, 204, 158}, kAsleep{249, 233, 212};
+constexpr double kSmallestMarked = 8.0;  // radius of a free body whose turning is still seen [pixels]
+constexpr double kHinge = 4.5;           // radius of its ring
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+/// The first stretch of the ray from a shape's centre of area along its own x axis that lies within it.
+std::array<Vec2, 2> markOf(const Polygon& shape) {
+  const Vec2 center = shape.centroid();
+  std::vector<double> crossings;
+  for (std::uint32_t i = 0; i < shape.edgeCount(); ++i) {
+    const Vec2 a = shape.edgeStart(i) - center, b = shape.edgeEnd(i) - center;
+    if ((a.y() > 0.0) == (b.y() > 0.0)) continue;
+    const double x = a.x() + (b.x() - a.x()) * a.y() / (a.y() - b.y());
+    if (x > 0.0) crossings.push_back(x);
+  }
+  std::sort(crossings.begin(), crossings.end());
+  const bool within = crossings.size() % 2 == 1;
+  if (crossings.empty()) return {center, center};
+  const double from = within ? 0.0 : crossings[0], to = crossings[within ? 0 : 1];
+  return {center + Vec2(from, 0.0), center + Vec2(to, 0.0)};
+}
 
 }  // namespace
 
@@ -44,6 +65,7 @@ PngPainter::PngPainter(const scene::Scene& scene)
     bulletDensity_ = scene.world.bullet->density;
     bulletRadius_ = scene.world.bullet->radius;
   }
+  particles_ = scene.world.fluid || scene.world.bullet;
   // One digit more than the frames need: they are taken at step ends, a little after their times.
   timeDigits_ = std::clamp(static_cast<int>(std::ceil(-std::log10(scene.output.every))) + 1, 1, 9);
 
@@ -72,7 +94,7 @@ void PngPainter::draw(const std::string& file, const World& world) const {
   drawSides(cr);
   drawHeader(cr, world.time());
   drawScale(cr);
-  drawColorBar(cr);
+  if (particles_) drawColorBar(cr);
 
   run::writeWholeFile(file, pngBytes(cr, surface.get(), file));
 }
@@ -131,12 +153,38 @@ void PngPainter::drawBodies(cairo_t* cr, const World& world) const {
       }
       cairo_close_path(cr);
     }
-    setGrey(cr, kBody);
+    const Motion motion = world.bodyDefinition(b).motion;
+    if (motion == Motion::Fixed)
+      setGrey(cr, kBody);
+    else
+      setColor(cr, motion == Motion::Scripted ? kScripted : world.body(b).asleep ? kAsleep : kFree);
     cairo_fill_preserve(cr);  // holes run the other way round, so the winding rule leaves them out
     setGrey(cr, kDark);
     cairo_stroke(cr);
   }
+  for (std::size_t b = 0; b < world.bodyCount(); ++b)
+    if (world.bodyDefinition(b).motion == Motion::Free) drawMark(cr, world.bodyDefinition(b), world.body(b).transform);
   cairo_restore(cr);
+}
+
+/// What shows that a free body turns, and what holds it: a line, a ring about its hinge.
+void PngPainter::drawMark(cairo_t* cr, const BodyDef& body, const Transform& transform) const {
+  setGrey(cr, kDark);
+  if (std::sqrt(body.shape->area() / kPi) * pixels_ >= kSmallestMarked * unit_) {
+    const auto [from, to] = markOf(*body.shape);
+    const Vec2 a = toPixel(transform.toWorld(from)), b = toPixel(transform.toWorld(to));
+    cairo_move_to(cr, a.x(), a.y());
+    cairo_line_to(cr, b.x(), b.y());
+    cairo_stroke(cr);
+  }
+  if (!body.hinge) return;
+  const Vec2 at = toPixel(body.hinge->at);
+  cairo_new_sub_path(cr);
+  cairo_arc(cr, at.x(), at.y(), kHinge * unit_, 0.0, 2.0 * kPi);
+  cairo_set_source_rgb(cr, 1, 1, 1);
+  cairo_fill_preserve(cr);
+  setGrey(cr, kDark);
+  cairo_stroke(cr);
 }
 
 void PngPainter::drawSides(cairo_t* cr) const {

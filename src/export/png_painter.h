@@ -29,6 +29,7 @@ class PngPainter {
   }
   void drawParticles(const World& world, std::uint8_t* data, int stride) const;
   void drawBodies(_cairo* cr, const World& world) const;
+  void drawMark(_cairo* cr, const BodyDef& body, const Transform& transform) const;
   void drawSides(_cairo* cr) const;
   void drawHeader(_cairo* cr, double time) const;
   void drawScale(_cairo* cr) const;
@@ -40,6 +41,7 @@ class PngPainter {
   Box view_;                                              // [m]
   double restDensity_ = 1000.0, bulletDensity_ = 1000.0;  // [kg/m²]
   double fluidRadius_ = 0.0, bulletRadius_ = 0.0;         // [m]
+  bool particles_ = false;                                // else there is nothing to colour
   int timeDigits_ = 3;
   int width_ = 0, height_ = 0;
   double unit_ = 1.0;                                           // pixels per unit of the layout: 1 at a width of 1280

@@ -76,7 +76,8 @@ void Progress::update(double time, std::size_t particles) {
 std::string Progress::describe(double time, std::size_t particles, Clock::time_point now) const {
   const double wall = std::chrono::duration<double>(now - start_).count();
   const double rate = (time - begin_) / wall;
-  return fmt::format("{:.4g} of {:.4g} s, {} particles, {:.3g} simulated s per s, {} left", time, end_, particles, rate,
+  const std::string live = particles > 0 ? fmt::format(" {} particles,", particles) : "";  // none: a world of bodies
+  return fmt::format("{:.4g} of {:.4g} s,{} {:.3g} simulated s per s, {} left", time, end_, live, rate,
                      durationInWords((end_ - time) / rate));
 }
 

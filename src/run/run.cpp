@@ -61,7 +61,7 @@ std::string advice(const World& world, const StepReport& report) {
       return "look for fluid that is pressed together there: overlapping blocks, a body that moves into the fluid, a "
              "gap narrower than a few spacings; a smaller `model.spacing` resolves it";
     default:
-      return "look for what is fastest there: a block's or an emitter's velocity, a scripted body; a smaller "
+      return "look for what is fastest there: a block's or an emitter's velocity, a body; a smaller "
              "`model.spacing` makes the adaptive steps shorter";
   }
 }

@@ -114,9 +114,10 @@ double volumeError(const World& world, double fluidArea0) {
 double momentumError(const World& world) {
   const Totals now = world.totals();
   const Ledger& ledger = world.ledger();
-  const double scale = now.mass * ledger.maxSpeed;
+  if (!(now.mass > 0.0)) return 0.0;  // nothing is left: no scale to put the rest against
+  // The ledger's largest speed is that of particles; bodies alone have the largest kinetic energy.
+  const double scale = now.mass * std::max(ledger.maxSpeed, std::sqrt(2.0 * ledger.maxKinetic / now.mass));
   const Vec2 unexplained = now.momentum - ledger.momentum0 - ledger.impulse;
-  // Without particles left the momentum must still add up, but there is no scale to put it against.
   return scale > 0.0 ? unexplained.norm() / scale : 0.0;
 }
 

@@ -69,5 +69,7 @@ void checkMemory(const Draft& draft);
 void seed(Draft& draft);
 /// Looks for what runs but is probably not meant.
 void judge(Draft& draft);
+/// Its part for free bodies: overlaps at the start, hinges far away, what reaches out of the domain.
+void judgeFreeBodies(Draft& draft);
 
 }  // namespace froude::scene

@@ -83,9 +83,14 @@ Estimate estimate(const Scene& scene) {
   result.speed = expectedSpeed(scene, true);
   for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
   result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
-  result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount()));
+  // Peak resident memory of the program with 10,000 boxes, fixed, scripted or free: 9.5 to 10 kB each.
+  constexpr double kBodyBytes = 1e4;
+  result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount())) +
+                 kBodyBytes * static_cast<double>(world.bodies.size());
   result.bounds = boundsOf(scene, gravity);
-  result.substep = result.bounds.empty() ? scene.duration : std::min(result.bounds.front().dt, scene.duration);
+  constexpr double kLongest = 0.01;  // [s] that a world steps at once where nothing binds it
+  result.substep = std::min(scene.duration, world.timeStep.value_or(kLongest));
+  if (!result.bounds.empty()) result.substep = std::min(result.substep, result.bounds.front().dt);
   result.substeps = std::ceil(scene.duration / result.substep);
   return result;
 }

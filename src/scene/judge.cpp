@@ -139,10 +139,11 @@ class GapJudge {
       return placed_[a].bounds().min.x() < placed_[b].bounds().min.x();
     });
     for (std::size_t i = 0; i < order.size(); ++i) {
+      if (!gapStays(order[i])) continue;
       judgeSides(order[i]);
       const Box reach = placed_[order[i]].bounds().grown(dx_);
       for (std::size_t k = i + 1; k < order.size() && placed_[order[k]].bounds().min.x() <= reach.max.x(); ++k) {
-        if (!reach.overlaps(placed_[order[k]].bounds())) continue;
+        if (!reach.overlaps(placed_[order[k]].bounds()) || !gapStays(order[k])) continue;
         tests_ += static_cast<double>(placed_[order[i]].edgeCount()) * placed_[order[k]].edgeCount();
         if (tests_ > kMostTests || said_ >= kMostGaps) return;
         say(order[i], "body." + draft_.scene.world.bodies[order[k]].name,
@@ -152,6 +153,9 @@ class GapJudge {
   }
 
  private:
+  /// A free body's gaps change as it moves.
+  bool gapStays(std::size_t i) const { return draft_.scene.world.bodies[i].motion != Motion::Free; }
+
   void judgeSides(std::size_t i) {
     const DomainDef& domain = draft_.scene.world.domain;
     const Box& box = placed_[i].bounds();
@@ -186,6 +190,7 @@ class GapJudge {
 void judge(Draft& draft) {
   judgeTimeStep(draft);
   judgeCuts(draft);
+  judgeFreeBodies(draft);
   if (!draft.scene.world.fluid) return;
   judgeConveyors(draft);
   judgeSlip(draft);

@@ -53,10 +53,26 @@ std::vector<ScriptPiece> readScript(TableReader& body) {
   return script;
 }
 
+std::optional<HingeDef> readHinge(TableReader& body) {
+  std::optional<TableReader> table = body.table("hinge", {"at", "motor"});
+  if (!table) return std::nullopt;
+  HingeDef hinge;
+  hinge.at = table->vector("at");
+  if (std::optional<TableReader> motor = table->table("motor", {"speed", "torque"})) {
+    hinge.motor =
+        MotorDef{motor->number("speed", Range::between(-1e6, 1e6)), motor->number("torque", Range::notNegative(1e15))};
+    table->resolved().set("motor", motor->resolved());
+  }
+  body.resolved().set("hinge", table->resolved());
+  return hinge;
+}
+
 void readMotion(TableReader& body, BodyDef& def) {
-  const std::string motion = body.word("motion", {"fixed", "scripted"}, "fixed", {"free"});
-  def.motion = motion == "fixed" ? Motion::Fixed : Motion::Scripted;
-  if (body.has("hinge")) body.fail("hinge", "hinges are not in this version (they hold free bodies)");
+  const std::string motion = body.word("motion", {"fixed", "scripted", "free"}, "fixed");
+  def.motion = motion == "fixed" ? Motion::Fixed : motion == "free" ? Motion::Free : Motion::Scripted;
+  def.hinge = readHinge(body);
+  if (def.hinge && def.motion != Motion::Free)
+    body.fail("hinge", fmt::format("a hinge holds a free body and this one is {}, right is motion = \"free\"", motion));
   def.velocity = body.vector("velocity", Vec2(0.0, 0.0));
   def.spin = body.number("spin", Range::between(-1e6, 1e6), 0.0);
   def.script = readScript(body);
@@ -65,6 +81,9 @@ void readMotion(TableReader& body, BodyDef& def) {
     body.fail(def.spin != 0.0 ? "spin" : "velocity", "a fixed body does not move, right is motion = \"scripted\"");
   if (def.motion == Motion::Fixed && !def.script.empty())
     body.fail("script", "a fixed body does not move, right is motion = \"scripted\"");
+  if (def.motion == Motion::Free && !def.script.empty())
+    body.fail("script",
+              "a free body is moved by forces, right is motion = \"scripted\", or velocity and spin at the start");
   if (!def.script.empty() && moves)
     body.fail(def.spin != 0.0 ? "spin" : "velocity", "stands beside a script, right is one of them");
 }
@@ -80,6 +99,25 @@ void readSurface(TableReader& body, BodyDef& def) {
   constexpr std::int64_t kAll = 0xFFFFFFFF;
   def.group = static_cast<std::uint32_t>(body.integer("group", 0, kAll, 1));
   def.collidesWith = static_cast<std::uint32_t>(body.integer("collides_with", 0, kAll, kAll));
+}
+
+/// A free body needs a mass and a moment of inertia that can be divided by.
+void checkMass(const TableReader& body, const BodyDef& def) {
+  if (def.motion != Motion::Free) return;
+  const double mass = def.density * def.shape->area(), inertia = def.density * def.shape->secondMoment();
+  if (std::isnormal(mass) && std::isnormal(inertia) && std::isnormal(1.0 / mass) && std::isnormal(1.0 / inertia))
+    return;
+  body.fail(body.has("density") ? "density" : "shape",
+            fmt::format("gives the free body a mass of {} kg and a moment of inertia of {} kg·m², right are a density "
+                        "and a size that can be computed with",
+                        show(mass), show(inertia)));
+}
+
+/// A hinged body turns about its hinge: unless a velocity is given, that of its centre of mass follows from its spin.
+void turnAboutHinge(const TableReader& body, BodyDef& def) {
+  if (!def.hinge || def.spin == 0.0 || body.has("velocity")) return;
+  const Vec2 center = Transform::of(def.position, def.angle).toWorld(def.shape->centroid());
+  def.velocity = def.spin * leftNormal(center - def.hinge->at);
 }
 
 /// How copies are laid out: count[i] steps along step[i], first index fastest.
@@ -139,6 +177,8 @@ void addBody(TableReader& body, BodyDef def, double degrees, Draft& draft, std::
   copy.set("name", Node::of(def.name));
   copy.set("position", Node::of(def.position));
   copy.set("angle", Node::of(degrees));
+  copy.set("velocity", Node::of(def.velocity));
+  if (def.hinge) copy.find("hinge")->set("at", Node::of(def.hinge->at));
   resolved.items.push_back(std::move(copy));
   draft.bodyPlaces.push_back(body.place("shape"));
   draft.bodyPaths.push_back("body." + def.name);
@@ -160,6 +200,7 @@ void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::
   }
   readMotion(body, def);
   readSurface(body, def);
+  checkMass(body, def);
   const std::optional<Repeat> repeat = readRepeat(body);
   const Repeat r = repeat.value_or(Repeat{});
   for (std::int64_t k = 0; k < r.count[0] * r.count[1]; ++k) {
@@ -170,6 +211,11 @@ void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::
     const double turned = degrees + static_cast<double>(k) * r.turn;
     if (std::abs(turned) > 1e9) body.fail("repeat", "turns the last copy by more than 1e9 degrees");
     copy.angle = kDegrees * turned;
+    if (repeat && def.hinge) {  // at the same place of the copy
+      const Transform turn = Transform::of(copy.position, kDegrees * (turned - degrees));
+      copy.hinge->at = turn.toWorld(def.hinge->at - position);
+    }
+    turnAboutHinge(body, copy);
     addBody(body, std::move(copy), turned, draft, names, resolved);
   }
 }

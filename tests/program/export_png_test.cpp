@@ -169,6 +169,43 @@ TEST(ExportPng, shows_polygons_grey_with_their_holes_open) {
   EXPECT_EQ(pixel(1.6, 0.5), 0xFFFFFFu);
 }
 
+TEST(ExportPng, tells_fixed_scripted_and_free_bodies_apart_and_shows_how_a_free_one_is_turned) {
+  scene::Scene scene = smallScene();
+  scene.bulletBlocks.clear();
+  scene.fluidBlocks.clear();
+  scene.world.fluid.reset();
+  scene.world.bullet.reset();
+  scene.world.bodies.clear();
+  const auto shape = std::make_shared<Polygon>(Polygon::box({{-0.2, -0.2}, {0.2, 0.2}}));
+  for (const Motion motion : {Motion::Fixed, Motion::Scripted, Motion::Free}) {
+    BodyDef body;
+    body.shape = shape;
+    body.motion = motion;
+    body.position = {0.4 + 0.6 * static_cast<double>(scene.world.bodies.size()), 0.5};
+    scene.world.bodies.push_back(body);
+  }
+  scene.world.bodies[2].angle = 0.5 * kPi;
+  scene.world.bodies[2].hinge = HingeDef{{1.6, 0.35}, std::nullopt};
+  const World world = worldOf(scene);
+  TemporaryFolder folder;
+  drawPng(folder.file("picture.png"), world, scene);
+  const Picture picture = read(folder.file("picture.png"));
+  const double pixels = (1280.0 - 56.0) / 2.0;
+  const auto pixel = [&](double x, double y) {
+    return picture.at(static_cast<int>(28.0 + x * pixels), static_cast<int>(60.0 + (1.0 - y) * pixels));
+  };
+  EXPECT_NE(pixel(0.35, 0.55), pixel(0.95, 0.55));
+  EXPECT_NE(pixel(0.35, 0.55), pixel(1.55, 0.55));
+  EXPECT_NE(pixel(0.95, 0.55), pixel(1.55, 0.55));
+  EXPECT_NE(pixel(1.6, 0.6), pixel(1.55, 0.6)) << "its x axis points up";
+  EXPECT_EQ(pixel(1.7, 0.5), pixel(1.55, 0.55)) << "and no longer right";
+  EXPECT_EQ(pixel(0.5, 0.5), pixel(0.35, 0.55)) << "fixed ones have no mark";
+  EXPECT_EQ(pixel(1.6, 0.35), 0xFFFFFFu) << "the hinge is a ring";
+  for (int x = 700; x < picture.width; ++x)
+    for (int y = picture.height - 60; y < picture.height; ++y)
+      ASSERT_EQ(picture.at(x, y), 0xFFFFFFu) << "without particles there is nothing to colour, and no bar";
+}
+
 TEST(ExportPng, has_letters_and_a_colour_bar) {
   scene::Scene scene = smallScene();
   scene.fluidBlocks.clear();

@@ -75,6 +75,35 @@ TEST(ExportSegments, hold_every_particle_as_it_is) {
   EXPECT_EQ(readNumber(file, "frame_00000", "index"), 0.0);
 }
 
+// Poses of free bodies are those of their origins, also where the centre of mass is elsewhere; there are no particles.
+TEST(ExportSegments, a_world_of_free_bodies_alone_has_their_poses_in_each_frame) {
+  scene::Scene scene = h5Scene();
+  scene.fluidBlocks.clear();
+  scene.bulletBlocks.clear();
+  scene.world.fluid.reset();
+  scene.world.bullet.reset();
+  scene.world.bodies[0].motion = Motion::Free;
+  scene.world.bodies[0].position = {1.0, 0.6};
+  scene.world.bodies[0].velocity = {0.5, 0.0};
+  World world = worldOf(scene);
+  TemporaryFolder folder;
+  FrameWriter writer(folder.path(), scene, world, 0);
+  writer.write(world, 0);
+  world.step(0.1);
+  writer.write(world, 1);
+  writer.closeSegment();
+  const std::string file = folder.file("frames/0000.h5");
+  EXPECT_EQ(readDataset(file, "frame_00000/position").shape, (std::vector<hsize_t>{0, 2}));
+  const test::Dataset first = readDataset(file, "frame_00000/bodies"), second = readDataset(file, "frame_00001/bodies");
+  ASSERT_EQ(first.shape, (std::vector<hsize_t>{1, 6}));
+  EXPECT_NEAR(first.values[0], 1.0, 1e-15);
+  EXPECT_NEAR(first.values[1], 0.6, 1e-15);
+  EXPECT_EQ(first.values[3], 0.5);
+  EXPECT_NEAR(second.values[0], 1.05, 1e-6);
+  EXPECT_NEAR(second.values[1], 0.6 - 0.5 * 9.81 * 0.01, 3e-3) << "a sub-step's error of free fall";
+  EXPECT_NE(folder.text("frames.xdmf").find("</Xdmf>"), std::string::npos);
+}
+
 TEST(ExportSegments, positions_far_from_the_origin_are_doubles) {
   scene::Scene scene = h5Scene();
   EXPECT_EQ(positionBytes(scene.world), 4);

@@ -199,9 +199,7 @@ TEST(SceneRefusal, bodies) {
   expectRefusals({
       {body + "denisty = 3\n", "8:1: body.gate.denisty: unknown key", "\"density\""},
       {body + "density = 0\n", "8:11: body.gate.density: is 0", "above 0"},
-      {body + "motion = \"free\"\n", "8:10: body.gate.motion: \"free\" is not in this version", "fixed, scripted"},
       {body + "motion = \"moving\"\n", "8:10: body.gate.motion: is \"moving\"", ""},
-      {body + "hinge = { at = [0, 0] }\n", "8:9: body.gate.hinge: ", "not in this version"},
       {body + "restitution = 1.5\n", "8:15: body.gate.restitution: is 1.5", "at most 1"},
       {body + "origin = \"middle\"\n", "8:10: body.gate.origin: ", "\"centroid\""},
       {body + "slip = \"yes\"\n", "8:8: body.gate.slip: ", "\"free\""},
@@ -233,6 +231,37 @@ TEST(SceneRefusal, bodies) {
       {body + "repeat = { count = [9, 1], step = [[1, 0], [0, 1]] }\n",
        "7:9: body.gate.shape: the body (copy gate.3) lies", ""},
       {kHead + "[[soft]]\nname = \"jelly\"\n", "5:3: soft: soft bodies are not in this version", ""},
+  });
+}
+
+TEST(SceneRefusal, free_bodies_and_hinges) {
+  const std::string body = kHead + "[[body]]\nname = \"gate\"\nshape = { box = [0, 0, 1, 1] }\n";  // next line is 8
+  const std::string free = body + "motion = \"free\"\n";                                           // next line is 9
+  expectRefusals({
+      {body + "hinge = { at = [0, 0] }\n", "8:9: body.gate.hinge: a hinge holds a free body and this one is fixed",
+       "motion = \"free\""},
+      {body + "motion = \"scripted\"\nhinge = { at = [0, 0] }\n",
+       "9:9: body.gate.hinge: a hinge holds a free body and this one is scripted", "motion = \"free\""},
+      {free + "script = [{ until = 1 }]\n", "9:10: body.gate.script: a free body is moved by forces", "\"scripted\""},
+      {free + "density = 0\n", "9:11: body.gate.density: is 0", "above 0"},
+      {free + "density = -3\n", "9:11: body.gate.density: is -3", "above 0"},
+      {free + "density = inf\n", "9:11: body.gate.density: is inf", "above 0"},
+      {free + "density = 1e-310\n", "9:11: body.gate.density: gives the free body a mass of 1e-310 kg", ""},
+      {free + "velocity = [nan, 0]\n", "9:13: body.gate.velocity", "nan"},
+      {free + "hinge = [0, 0]\n", "9:9: body.gate.hinge: ", "table"},
+      {free + "hinge = { }\n", "9:9: body.gate.hinge.at: is missing", ""},
+      {free + "hinge = { at = [0] }\n", "9:16: body.gate.hinge.at: ", ""},
+      {free + "hinge = { at = [0, inf] }\n", "9:20: body.gate.hinge.at", "inf"},
+      {free + "hinge = { att = [0, 0] }\n", "9:11: body.gate.hinge.att: unknown key", "\"at\""},
+      {free + "hinge = { at = [0, 0], motor = { } }\n", "9:32: body.gate.hinge.motor.speed: is missing", ""},
+      {free + "hinge = { at = [0, 0], motor = { speed = 1 } }\n", "9:32: body.gate.hinge.motor.torque: is missing",
+       "from 0"},
+      {free + "hinge = { at = [0, 0], motor = { speed = 1, torque = -2 } }\n",
+       "9:54: body.gate.hinge.motor.torque: is -2", "from 0"},
+      {free + "hinge = { at = [0, 0], motor = { speed = nan, torque = 2 } }\n",
+       "9:42: body.gate.hinge.motor.speed: is nan", ""},
+      {free + "hinge = { at = [0, 0], motor = { speed = 1, torqe = 2 } }\n",
+       "9:45: body.gate.hinge.motor.torqe: unknown key", "\"torque\""},
   });
 }
 

@@ -44,6 +44,15 @@ void expectSameBodies(const WorldDef& a, const WorldDef& b) {
     EXPECT_EQ(p.slip, q.slip);
     EXPECT_EQ(p.group, q.group);
     EXPECT_EQ(p.collidesWith, q.collidesWith);
+    ASSERT_EQ(p.hinge.has_value(), q.hinge.has_value());
+    if (p.hinge) {
+      EXPECT_EQ(bits(p.hinge->at), bits(q.hinge->at));
+      ASSERT_EQ(p.hinge->motor.has_value(), q.hinge->motor.has_value());
+      if (p.hinge->motor) {
+        EXPECT_EQ(bits(p.hinge->motor->speed) + bits(p.hinge->motor->torque),
+                  bits(q.hinge->motor->speed) + bits(q.hinge->motor->torque));
+      }
+    }
     ASSERT_EQ(p.script.size(), q.script.size());
     for (std::size_t k = 0; k < p.script.size(); ++k)
       for (const double t : {0.0, 0.3, 1.7}) {
@@ -235,6 +244,45 @@ TEST(SceneResolved, its_world_has_the_same_state_after_some_steps) {
   }
   EXPECT_EQ(a.stateHash(), b.stateHash());
   EXPECT_NE(a.stateHash(), start);
+}
+
+const std::string kFree = kHead + R"toml([[body]]
+name = "box"
+shape = { box = [-0.051, -0.05, 0.05, 0.05] }
+position = [0.3, 0.3]
+angle = 7.7
+motion = "free"
+density = 333.3
+velocity = [0.1, -0.2]
+spin = 1.7
+repeat = { count = [3, 2], step = [[0.21, 0.003], [0.0, 0.21]], turn = 11.3 }
+[[body]]
+name = "wheel"
+shape = { polygon = [[0, 0], [0.1, 0.01], [0.02, 0.1]] }
+position = [1.3, 0.2]
+angle = -13.1
+motion = "free"
+spin = 3.3
+hinge = { at = [1.33, 0.21], motor = { speed = 2.1, torque = 50.7 } }
+repeat = { count = [2, 3], step = [[0.31, 0.0], [0.0, 0.23]], turn = 17.7 }
+[[body]]
+name = "door"
+shape = { box = [0, 0, 0.02, 0.2] }
+position = [0.1, 0.05]
+motion = "free"
+hinge = { at = [0.11, 0.25] }
+)toml";
+
+TEST(SceneResolved, free_bodies_hinges_and_motors_are_in_it) {
+  const scene::Scene given = loadText(kFree);
+  ASSERT_EQ(given.world.bodies.size(), 13u);
+  ASSERT_TRUE(given.world.bodies[9].hinge && given.world.bodies[9].hinge->motor);
+  const scene::Scene again = loadText(given.resolved);
+  expectSame(given, again);
+  EXPECT_EQ(again.resolved, given.resolved);
+  for (const char* text : {"motion = \"free\"", "density = 333.3", "torque = 50.7", "hinge"})
+    EXPECT_NE(given.resolved.find(text), std::string::npos) << text;
+  EXPECT_EQ(given.resolved.find("-0.0,"), std::string::npos);
 }
 
 TEST(SceneResolved, copies_share_one_shape_again) {

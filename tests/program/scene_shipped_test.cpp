@@ -101,6 +101,55 @@ TEST(ShippedScenes, the_harbour_stands_as_it_was_drawn) {
   EXPECT_EQ(s.world.bodies[2].shape, s.world.bodies[5].shape) << "gulls share a shape";
 }
 
+std::size_t bodiesThat(const scene::Scene& s, Motion motion) {
+  return static_cast<std::size_t>(std::count_if(s.world.bodies.begin(), s.world.bodies.end(),
+                                                [=](const BodyDef& b) { return b.motion == motion; }));
+}
+
+TEST(ShippedScenes, those_of_free_bodies_hold_what_they_say) {
+  EXPECT_EQ(bodiesThat(shipped("pyramid"), Motion::Free), 210u);
+  const scene::Scene tumbler = shipped("tumbler");
+  EXPECT_EQ(bodiesThat(tumbler, Motion::Free), 2000u);
+  EXPECT_EQ(bodiesThat(tumbler, Motion::Scripted), 1u);
+  for (const std::size_t sides : {4u, 5u, 6u, 8u})
+    EXPECT_EQ(std::count_if(tumbler.world.bodies.begin() + 1, tumbler.world.bodies.end(),
+                            [=](const BodyDef& b) { return b.shape->vertices().size() == sides; }),
+              500);
+  const scene::Scene floating = shipped("float");
+  const BodyDef& hull = floating.world.bodies.at(3);
+  EXPECT_GT(hull.density, floating.world.fluid->density);
+  EXPECT_LT(hull.density * hull.shape->area(), 0.6 * floating.world.fluid->density * (0.38 + 0.52) / 2 * 0.2);
+  for (const char* name : {"water_wheel", "gate"}) EXPECT_TRUE(shipped(name).world.bodies.at(0).hinge) << name;
+}
+
+TEST(ShippedScenes, the_gears_turn_as_their_teeth_say) {
+  const scene::Scene s = shipped("gears");
+  const auto teeth = [](const Polygon& gear, double tip) {  // two vertices each at the tip circle
+    return std::count_if(gear.vertices().begin(), gear.vertices().end(),
+                         [=](const Vec2& v) { return std::abs(v.norm() - tip) < 1e-4; }) /
+           2;
+  };
+  EXPECT_EQ(teeth(*s.world.bodies.at(0).shape, 0.445), 16);
+  EXPECT_EQ(teeth(*s.world.bodies.at(1).shape, 0.645), 24);
+  World world = scene::makeWorld(s);
+  while (world.time() < 2.0) ASSERT_TRUE(world.substep().ok());
+  const double small = world.body(0).angle, large = world.body(1).angle;
+  EXPECT_GT(small, 2.0) << "rad; the motor turns it by 2 rad/s once it is up to speed";
+  EXPECT_LT(small, 4.0);
+  EXPECT_NEAR(small, -1.5 * large, 0.012 / 0.4) << "12 mm of backlash at the pitch circle of 0.4 m";
+}
+
+TEST(ShippedScenes, the_stacks_stand) {
+  const scene::Scene s = shipped("stacks");
+  World world = scene::makeWorld(s);
+  while (world.time() < 2.0) ASSERT_TRUE(world.substep().ok());
+  for (std::size_t b = 0; b < world.bodyCount(); ++b) {
+    SCOPED_TRACE(s.world.bodies[b].name);
+    EXPECT_NEAR((world.body(b).transform.position - s.world.bodies[b].position).norm(), 0.0, 5e-3);
+    EXPECT_NEAR(world.body(b).angle, 0.0, 5e-3);
+  }
+}
+
 TEST(ShippedScenes, ten_and_forty_thousand_particles_are_one_key_away) {
   const std::string file = std::string(FROUDE_SOURCE_DIR) + "/scenes/dam_speed.toml";
   EXPECT_EQ(scene::load(file, {{"model.spacing", "0.01"}}).fluidParticles(), 10000u);
