@@ -7,7 +7,8 @@ namespace froude {
 
 namespace {
 
-constexpr int kSteps = 100;
+// A tip that passes at a hair's breadth takes some ten steps, and there may be one with every turn.
+constexpr double kSteps = 100.0, kStepsPerRadian = 20.0, kMostSteps = 10000.0;
 constexpr double kSlack = 0.1;  // of the target
 constexpr int kSupportSteps = 16;
 
@@ -89,7 +90,9 @@ TimeOfImpact timeOfImpact(const ConvexShape& a, const RigidMotion& motionA, cons
   TimeOfImpact impact;
   PairCache cache;
   double time = 0.0;
-  for (int step = 1; step <= kSteps; ++step) {
+  const double turn = (std::abs(motionA.spin) + std::abs(motionB.spin)) * duration;
+  const int limit = static_cast<int>(std::fmin(kSteps + kStepsPerRadian * turn, kMostSteps));
+  for (int step = 1; step <= limit; ++step) {
     const Transform poseA = motionA.at(time), poseB = motionB.at(time);
     const ClosestFeatures closest = closestFeatures(a, b, poseIn(poseA, poseB), cache);
     impact.steps = step;
