@@ -77,11 +77,11 @@ TEST(Sat, a_pair_of_pieces_without_a_free_axis_is_no_contact) {
   const std::vector<ConvexShape> pieces = ConvexShape::piecesOf(wheel);
   int without = 0;
   for (const ConvexShape& a : pieces) {
-    bool outline = false;
-    for (std::uint32_t k = 0; k < a.size(); ++k) outline = outline || a.isOutline(k);
+    bool touchable = false;
+    for (std::uint32_t k = 0; k < a.size(); ++k) touchable = touchable || a.isOutline(k);
     PairCache cache;
     const SeparatingAxis axis = sat(a, a, {}, cache);
-    if (outline) continue;
+    if (touchable) continue;
     ++without;
     EXPECT_EQ(axis.status, PairStatus::Apart);
     EXPECT_EQ(axis.separation, kInfinity);
