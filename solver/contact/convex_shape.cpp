@@ -59,6 +59,7 @@ std::vector<ConvexShape> ConvexShape::piecesOf(const Polygon& polygon, const Vec
     for (const std::uint32_t v : piece.vertex) shape.vertices_.push_back(polygon.vertices()[v] - origin);
     shape.finish();
     if (pieces.size() > 1) {
+      shape.whole_ = false;
       for (std::size_t k = 0; k < piece.size(); ++k) {
         const std::uint32_t v = piece.vertex[k];
         const Cone cone{normalOf(polygon.previous(v)), normalOf(v)};
@@ -73,12 +74,15 @@ std::vector<ConvexShape> ConvexShape::piecesOf(const Polygon& polygon, const Vec
 }
 
 void ConvexShape::finish() {
-  const std::uint32_t n = size();
+  const auto n = static_cast<std::uint32_t>(vertices_.size());
+  size_ = n;
   normals_.resize(n);
+  corners_.resize(n);
   double area = 0.0;
   Vec2 moment{0.0, 0.0};
   for (std::uint32_t k = 0; k < n; ++k) {
     normals_[k] = rightNormal(vertices_[next(k)] - vertices_[k]).stableNormalized();
+    corners_[k] = {vertices_[k], normals_[k]};
     // From the first vertex, so that a shape far from its frame's origin keeps its digits.
     const Vec2 p = vertices_[k] - vertices_[0];
     const Vec2 q = vertices_[next(k)] - vertices_[0];
@@ -104,18 +108,41 @@ Box ConvexShape::box(const Transform& pose) const {
 // An edge's rise is judged by its unit normal and not by its end points: edges of one rounding step have a direction
 // too, and a plateau of equal products does not end the climb too early.
 std::uint32_t ConvexShape::support(const Vec2& direction, std::uint32_t hint) const {
-  std::uint32_t k = hint < size() ? hint : 0;
-  if (cross(normals_[k], direction) > 0.0) {
-    for (std::uint32_t step = size(); step > 0 && cross(normals_[k], direction) > 0.0; --step) k = next(k);
+  const std::uint32_t start = hint < size_ ? hint : 0;
+  const Corner* corner = corners_.data();
+  std::uint32_t k = start, before = previous(start);
+  if (cross(corner[k].normal, direction) > 0.0) {
+    for (std::uint32_t step = size_; step > 0 && cross(corner[k].normal, direction) > 0.0; --step) k = next(k);
+    before = previous(k);
   } else {
-    for (std::uint32_t step = size(); step > 0 && cross(normals_[previous(k)], direction) < 0.0; --step)
-      k = previous(k);
+    for (std::uint32_t step = size_; step > 0 && cross(corner[before].normal, direction) < 0.0; --step) {
+      k = before;
+      before = previous(k);
+    }
   }
   // In the middle of a straight run on the far side both edges are level, and yet it is the lowest vertex.
-  if (normals_[k].dot(direction) < 0.0 && normals_[previous(k)].dot(direction) < 0.0)
-    for (std::uint32_t i = 0; i < size(); ++i)
-      if (direction.dot(vertices_[i] - vertices_[k]) > 0.0) k = i;
+  if (k == start && corner[k].normal.dot(direction) < 0.0 && corner[before].normal.dot(direction) < 0.0)
+    for (std::uint32_t i = 0; i < size_; ++i)
+      if (direction.dot(corner[i].vertex - corner[k].vertex) > 0.0) k = i;
   return k;
+}
+
+// Halves the range of normals in which the direction lies, by their angles from the first normal.
+std::uint32_t ConvexShape::support(const Vec2& direction) const {
+  const Vec2& first = normal(0);
+  const auto isBeyond = [&](const Vec2& d) {
+    return cross(first, d) < 0.0 || (cross(first, d) == 0.0 && first.dot(d) < 0.0);
+  };
+  const bool beyond = isBeyond(direction);
+  std::uint32_t low = 0, high = size_;  // the normal `low` is not past the direction, `high` is
+  while (high - low > 1) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    const Vec2& n = normal(middle);
+    const bool passed = isBeyond(n) != beyond ? beyond : cross(n, direction) >= 0.0;
+    (passed ? low : high) = middle;
+  }
+  // Rounding may put neighbours of a straight run in the wrong order: the climb has the last word.
+  return support(direction, high == size_ ? 0 : high);
 }
 
 bool ConvexShape::allows(std::uint32_t vertex, const Vec2& direction) const {
