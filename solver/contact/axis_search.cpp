@@ -41,19 +41,25 @@ struct Search {
     return other.isWhole() || other.allows(vertex, (-pair.toOther<kOfA>(self.normal(candidate))).vec());
   }
 
-  // Along no axis is the other shape farther away than any one of its points: its last support is one that lies deep
-  // behind most edges. One product an edge; the support is looked for where that bound beats the best.
+  // Along no axis is the other shape farther away than any of its points: its last support and the two beside it lie
+  // deep behind most edges. A few products an edge; the support is looked for where that bound beats the best.
   template <bool kOfA>
   void all(std::uint32_t hint) {
     const ConvexShape& self = pair.self<kOfA>();
     const ConvexShape& other = pair.other<kOfA>();
-    Flat point = kOfA ? pair.inA(other.vertex(hint)) : pair.inB(other.vertex(hint));
+    const auto place = [&](std::uint32_t k) { return kOfA ? pair.inA(other.vertex(k)) : pair.inB(other.vertex(k)); };
+    Flat point = place(hint), after = place(other.next(hint)), before = place(other.previous(hint));
     for (std::uint32_t k = 0; k < self.size(); ++k) {
-      if (dot(self.normal(k), point - Flat(self.vertex(k))) <= separation) continue;
+      const Flat n = self.normal(k);
+      const double bound = std::min(dot(n, point), std::min(dot(n, after), dot(n, before)));
+      if (bound - dot(n, self.vertex(k)) <= separation) continue;
       const std::uint32_t last = hint;
       consider<kOfA>(k, hint);
       if (done()) return;
-      if (hint != last) point = kOfA ? pair.inA(other.vertex(hint)) : pair.inB(other.vertex(hint));
+      if (hint == last) continue;
+      point = place(hint);
+      after = place(other.next(hint));
+      before = place(other.previous(hint));
     }
   }
 

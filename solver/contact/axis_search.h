@@ -16,7 +16,7 @@ enum class AxisChoice {
 template <bool kOfA>
 double separationAlong(const PairFrame& pair, std::uint32_t edge, std::uint32_t& support) {
   const Flat n = pair.self<kOfA>().normal(edge);
-  support = pair.other<kOfA>().support((-pair.toOther<kOfA>(n)).vec(), support);
+  support = climb(pair.other<kOfA>(), -pair.toOther<kOfA>(n), support);
   return dot(n, pair.armOf<kOfA>(edge, support));
 }
 

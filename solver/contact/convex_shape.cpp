@@ -11,6 +11,8 @@ namespace {
 
 // At a bend smaller than this a vertex of the polygon counts as lying on a straight run [rad].
 constexpr double kStraight = 1e-9;
+// From so many vertices on a search by halves is quicker than a look at all [measured].
+constexpr std::uint32_t kMany = 32;
 
 [[noreturn]] void refuse(const std::string& what) { throw Error("convex shape: " + what); }
 
@@ -94,6 +96,7 @@ void ConvexShape::finish() {
   innerRadius_ = kInfinity;
   for (std::uint32_t k = 0; k < n; ++k) {
     outerRadius_ = std::max(outerRadius_, (vertices_[k] - centroid_).norm());
+    reach_ = std::max(reach_, vertices_[k].norm());
     innerRadius_ = std::min(innerRadius_, normals_[k].dot(vertices_[k] - centroid_));
   }
   innerRadius_ = std::max(innerRadius_, 0.0);
@@ -105,44 +108,35 @@ Box ConvexShape::box(const Transform& pose) const {
   return box;
 }
 
-// An edge's rise is judged by its unit normal and not by its end points: edges of one rounding step have a direction
-// too, and a plateau of equal products does not end the climb too early.
-std::uint32_t ConvexShape::support(const Vec2& direction, std::uint32_t hint) const {
-  const std::uint32_t start = hint < size_ ? hint : 0;
-  const Corner* corner = corners_.data();
-  std::uint32_t k = start, before = previous(start);
-  if (cross(corner[k].normal, direction) > 0.0) {
-    for (std::uint32_t step = size_; step > 0 && cross(corner[k].normal, direction) > 0.0; --step) k = next(k);
-    before = previous(k);
-  } else {
-    for (std::uint32_t step = size_; step > 0 && cross(corner[before].normal, direction) < 0.0; --step) {
-      k = before;
-      before = previous(k);
+std::uint32_t ConvexShape::farthest(const Vec2& direction) const {
+  const double x = direction.x(), y = direction.y();
+  const auto along = [&](std::uint32_t k) { return x * corners_[k].vertex.x() + y * corners_[k].vertex.y(); };
+  std::uint32_t low = 0, high = size_;
+  if (size_ > kMany) {
+    // Halves the range of normals in which the direction lies, by their angles from the first normal: `low` is not past
+    // it, `high` is. Rounding may put neighbours of a straight run in the wrong order: those around have the last word.
+    const Vec2& first = corners_[0].normal;
+    const auto isBeyond = [&](const Vec2& d) { return cross(first, d) < 0.0; };
+    const bool beyond = isBeyond(direction);
+    while (high - low > 1) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      const Vec2& n = corners_[middle].normal;
+      const bool passed = isBeyond(n) != beyond ? beyond : cross(n, direction) >= 0.0;
+      (passed ? low : high) = middle;
     }
+    std::uint32_t best = high == size_ ? 0 : high;
+    while (along(next(best)) > along(best)) best = next(best);
+    while (along(previous(best)) > along(best)) best = previous(best);
+    return best;
   }
-  // In the middle of a straight run on the far side both edges are level, and yet it is the lowest vertex.
-  if (k == start && corner[k].normal.dot(direction) < 0.0 && corner[before].normal.dot(direction) < 0.0)
-    for (std::uint32_t i = 0; i < size_; ++i)
-      if (direction.dot(corner[i].vertex - corner[k].vertex) > 0.0) k = i;
-  return k;
-}
-
-// Halves the range of normals in which the direction lies, by their angles from the first normal.
-std::uint32_t ConvexShape::support(const Vec2& direction) const {
-  const Vec2& first = normal(0);
-  const auto isBeyond = [&](const Vec2& d) {
-    return cross(first, d) < 0.0 || (cross(first, d) == 0.0 && first.dot(d) < 0.0);
-  };
-  const bool beyond = isBeyond(direction);
-  std::uint32_t low = 0, high = size_;  // the normal `low` is not past the direction, `high` is
-  while (high - low > 1) {
-    const std::uint32_t middle = low + (high - low) / 2;
-    const Vec2& n = normal(middle);
-    const bool passed = isBeyond(n) != beyond ? beyond : cross(n, direction) >= 0.0;
-    (passed ? low : high) = middle;
+  std::uint32_t best = 0;
+  double most = along(0);
+  for (std::uint32_t k = 1; k < size_; ++k) {
+    const double here = along(k);
+    best = here > most ? k : best;
+    most = here > most ? here : most;
   }
-  // Rounding may put neighbours of a straight run in the wrong order: the climb has the last word.
-  return support(direction, high == size_ ? 0 : high);
+  return best;
 }
 
 bool ConvexShape::allows(std::uint32_t vertex, const Vec2& direction) const {

@@ -38,12 +38,11 @@ class FROUDE_API ConvexShape {
   /// Largest distance of a vertex from the centroid, least distance of an edge's line from it [m].
   double outerRadius() const { return outerRadius_; }
   double innerRadius() const { return innerRadius_; }
+  /// Largest distance of a vertex from the origin of its frame [m].
+  double reach() const { return reach_; }
   Box box(const Transform& pose) const;
-  /// The vertex farthest in `direction` (any length), climbed to from `hint`. Cost: O(size), O(1) where the hint is
-  /// near.
-  std::uint32_t support(const Vec2& direction, std::uint32_t hint) const;
-  /// The same without a hint. Cost: O(log size).
-  std::uint32_t support(const Vec2& direction) const;
+  /// A vertex that is farthest in `direction` (any length). Cost: O(size) up to 32 vertices, O(log size) beyond.
+  std::uint32_t farthest(const Vec2& direction) const;
 
   /// True for a whole polygon: then all edges and directions can be touched.
   bool isWhole() const { return whole_; }
@@ -70,7 +69,7 @@ class FROUDE_API ConvexShape {
   std::uint32_t size_ = 0;
   bool whole_ = true;
   Vec2 centroid_{0.0, 0.0};
-  double outerRadius_ = 0.0, innerRadius_ = 0.0;
+  double outerRadius_ = 0.0, innerRadius_ = 0.0, reach_ = 0.0;
   std::vector<Vec2> vertices_, normals_;
   std::vector<std::uint8_t> outline_;  // by edge
   std::vector<Cone> cone_;             // by vertex; empty for a whole polygon

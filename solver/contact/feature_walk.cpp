@@ -164,8 +164,8 @@ struct Walker {
 // behind.
 PairCache firstGuess(const PairFrame& pair) {
   const Flat towards = pair.inA(pair.b.centroid()) - Flat(pair.a.centroid());
-  return {vertexFeature(pair.a.support(towards.vec())),
-          vertexFeature(pair.b.support((-pair.turnedBack(towards)).vec()))};
+  return {vertexFeature(pair.a.farthest(towards.vec())),
+          vertexFeature(pair.b.farthest((-pair.turnedBack(towards)).vec()))};
 }
 
 }  // namespace

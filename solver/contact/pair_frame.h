@@ -25,6 +25,23 @@ inline double dot(const Flat& a, const Flat& b) { return a.x * b.x + a.y * b.y; 
 inline double cross(const Flat& a, const Flat& b) { return a.x * b.y - a.y * b.x; }
 inline Flat leftNormal(const Flat& a) { return {-a.y, a.x}; }
 
+/// ConvexShape::support for the inner loops: the same climb, in registers.
+inline std::uint32_t climb(const ConvexShape& shape, const Flat& d, std::uint32_t hint) {
+  std::uint32_t k = hint, before = shape.previous(hint);
+  if (cross(Flat(shape.normal(k)), d) > 0.0) {
+    for (std::uint32_t step = shape.size(); step > 0 && cross(Flat(shape.normal(k)), d) > 0.0; --step)
+      k = shape.next(k);
+    return k;
+  }
+  for (std::uint32_t step = shape.size(); step > 0 && cross(Flat(shape.normal(before)), d) < 0.0; --step) {
+    k = before;
+    before = shape.previous(k);
+  }
+  // In the middle of a straight run on the far side both edges are level, and yet it is the lowest vertex.
+  const bool lowest = dot(shape.normal(k), d) < 0.0 && dot(shape.normal(before), d) < 0.0;
+  return lowest ? shape.farthest(d.vec()) : k;
+}
+
 struct PairFrame {
   const ConvexShape& a;
   const ConvexShape& b;
