@@ -56,7 +56,7 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
     p.tangentMass = 1.0 / inverseMassAlong(tangent);
     p.normalImpulse = at.normalImpulse;
     p.tangentImpulse = at.tangentImpulse;
-    p.normalSum = p.tangentSum = p.approach = 0.0;
+    p.normalSum = p.tangentSum = p.approach = p.rebound = 0.0;
   }
   const Point &p = c.points[0], &q = c.points[1];
   c.coupling = c.count < 2 ? 0.0
@@ -222,6 +222,8 @@ void ContactSolver::warmStart(std::vector<SolverBody>& bodies, Crew& crew) {
   forEachColour(crew, [&](Constraint& c) {
     for (std::uint32_t i = 0; i < c.count; ++i) {
       Point& p = c.points[i];
+      // A blow is over with its sub-step; what is borne goes on.
+      if (p.rebound > 0.0) p.normalImpulse = p.tangentImpulse = p.rebound = 0.0;
       p.normalSum += p.normalImpulse;
       p.tangentSum += p.tangentImpulse;
       const double x = p.normalImpulse * c.normal.x() - p.tangentImpulse * c.normal.y();
@@ -247,15 +249,22 @@ void ContactSolver::rub(Constraint& c, SolverBody& a, SolverBody& b) const {
   }
 }
 
+// Newton's law of restitution where they touch already: blow by blow, as each is handed on.
 void ContactSolver::keepApart(Constraint& c, SolverBody& a, SolverBody& b) const {
   std::array<double, 2> rest{0.0, 0.0};
   for (std::uint32_t i = 0; i < c.count; ++i) {
-    const Point& p = c.points[i];
+    Point& p = c.points[i];
     const double room = std::max(0.0, separationNow(c.normal, p, a, b));
-    rest[i] = normalVelocity(c.normal, p, a, b) + room / settings_.h - p.inverseNormalMass * p.normalImpulse;
+    const double v = normalVelocity(c.normal, p, a, b);
+    if (room <= c.touching && v < -settings_.restitutionAbove) p.rebound = std::max(p.rebound, -c.restitution * v);
+    const double wanted = p.rebound > 0.0 ? p.rebound : -room / settings_.h;
+    rest[i] = v - wanted - p.inverseNormalMass * p.normalImpulse;
     if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
   }
-  const std::array<double, 2> x = solvePoints(c, rest);
+  applyNormal(c, solvePoints(c, rest), a, b);
+}
+
+void ContactSolver::applyNormal(Constraint& c, const std::array<double, 2>& x, SolverBody& a, SolverBody& b) {
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
     const double change = x[i] - p.normalImpulse;
@@ -300,28 +309,20 @@ void ContactSolver::push(std::vector<SolverBody>& bodies, Crew& crew) {
   forEachColour(crew, [&](Constraint& c) { part(c, bodies[c.a], bodies[c.b]); });
 }
 
-// Newton's law of restitution, against the approach before the impulses of the sub-step.
+// What was on its way at the start of the sub-step and has arrived: against the approach that it had then.
 void ContactSolver::bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const {
   std::array<double, 2> rest{0.0, 0.0};
   bool any = false;
   for (std::uint32_t i = 0; i < c.count; ++i) {
-    const Point& p = c.points[i];
-    const bool bounces = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 &&
+    Point& p = c.points[i];
+    const bool bounces = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 && p.rebound == 0.0 &&
                          separationNow(c.normal, p, a, b) <= c.touching;
+    if (bounces) p.rebound = -c.restitution * p.approach;
     any = any || bounces;
-    rest[i] = normalVelocity(c.normal, p, a, b) + (bounces ? c.restitution * p.approach : 0.0) -
-              p.inverseNormalMass * p.normalImpulse;
+    rest[i] = normalVelocity(c.normal, p, a, b) - p.rebound - p.inverseNormalMass * p.normalImpulse;
     if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
   }
-  if (!any) return;
-  const std::array<double, 2> x = solvePoints(c, rest);
-  for (std::uint32_t i = 0; i < c.count; ++i) {
-    Point& p = c.points[i];
-    const double change = x[i] - p.normalImpulse;
-    p.normalImpulse = x[i];
-    p.normalSum += change;
-    apply(c, p.armA, p.armB, change * c.normal.x(), change * c.normal.y(), a, b);
-  }
+  if (any) applyNormal(c, solvePoints(c, rest), a, b);
 }
 
 void ContactSolver::bounce(std::vector<SolverBody>& bodies, Crew& crew) {

@@ -65,6 +65,7 @@ class ContactSolver {
     double normalImpulse, tangentImpulse;
     double normalSum, tangentSum;  // over the sub-steps
     double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
+    double rebound;                // at least this velocity apart, in this sub-step: it bounces [m/s]
   };
   struct Constraint {
     std::uint32_t a, b, contact, count;
@@ -88,6 +89,7 @@ class ContactSolver {
   void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
   void rub(Constraint& c, SolverBody& a, SolverBody& b) const;
   void keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
+  static void applyNormal(Constraint& c, const std::array<double, 2>& impulses, SolverBody& a, SolverBody& b);
   void part(Constraint& c, SolverBody& a, SolverBody& b) const;
   void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
 

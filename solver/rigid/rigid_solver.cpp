@@ -191,26 +191,41 @@ void RigidSolver::integratePositions(const RigidStep& step, const BodySet& bodie
   crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SolverBody& b = bodies_[i];
-      if (poses_.still[i] != 0 && awake_[i] == 0) continue;
+      if ((poses_.still[i] != 0 && awake_[i] == 0) || bodies.definition(i).hinge) continue;
       const double w = b.w + b.pw;
       const Rotation turn = Rotation::of(b.turn + h * w);
-      if (bodies.definition(i).hinge) {
-        const Vec2 start = poses_.pose[i].rotation.apply(bodies.hingeAnchor(i));
-        const Vec2 moved = start - turn.apply(start);
-        b.dx = moved.x(), b.dy = moved.y();
-      } else {
-        b.dx += h * (b.vx + b.px);
-        b.dy += h * (b.vy + b.py);
-        if (flies_[i] != 0) {  // nothing but gravity acts: exactly on its parabola
-          const Vec2 back = 0.5 * h * h * accelerationOf(step, bodies, i);
-          b.dx -= back.x(), b.dy -= back.y();
-        }
+      b.dx += h * (b.vx + b.px);
+      b.dy += h * (b.vy + b.py);
+      if (flies_[i] != 0) {  // nothing but gravity acts: exactly on its parabola
+        const Vec2 back = 0.5 * h * h * accelerationOf(step, bodies, i);
+        b.dx -= back.x(), b.dy -= back.y();
       }
       b.turn += h * w;
       b.c = turn.c, b.s = turn.s;
       b.px = b.py = b.pw = 0.0;
     }
   });
+}
+
+// Hinged bodies turn about their hinge, and their velocity with them: of the angle alone this is the symplectic Euler
+// method, which keeps a pendulum's swing.
+void RigidSolver::turnHinged(const BodySet& bodies, double h, RigidStats& stats) {
+  for (const std::uint32_t i : hinged_) {
+    if (awake_[i] == 0) continue;
+    SolverBody& b = bodies_[i];
+    b.turn += h * (b.w + b.pw);
+    const Rotation turn = Rotation::of(b.turn);
+    const Vec2 start = poses_.pose[i].rotation.apply(bodies.hingeAnchor(i));
+    const Vec2 now = turn.apply(start);
+    const Vec2 v = cross(b.w, Vec2(-now));
+    const Vec2 impulse = bodies.mass(i).mass * (v - Vec2(b.vx, b.vy));
+    stats.impulse += impulse;
+    onBody_[i][0] += impulse.x(), onBody_[i][1] += impulse.y();
+    b.dx = start.x() - now.x(), b.dy = start.y() - now.y();
+    b.vx = v.x(), b.vy = v.y();
+    b.c = turn.c, b.s = turn.s;
+    b.px = b.py = b.pw = 0.0;
+  }
 }
 
 void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies) {
@@ -321,6 +336,7 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
       solveHinges(bodies, h, false, stats);
       solver_.push(bodies_, crew);
       integratePositions(step, bodies, h, crew);
+      turnHinged(bodies, h, stats);
       solver_.bounce(bodies_, crew);
       solveHinges(bodies, h, true, stats);
     }
