@@ -11,21 +11,23 @@ constexpr double kTie = 1e-12;
 struct Search {
   const PairFrame& pair;
   AxisChoice choice;
+  double tie;
   double separation = -kInfinity;
   std::uint32_t edge = 0, support = 0;
   bool ofA = true;
   bool apart = false;
-  double tie = 0.0;
 
   bool done() const { return apart && choice == AxisChoice::UntilParting; }
 
   template <bool kOfA>
   void consider(std::uint32_t candidate, std::uint32_t& hint) {
-    const double found = separationAlong(pair, kOfA, candidate, hint);
-    if (found > 0.0) apart = true;
-    const bool wins = found > separation + (separation > -kInfinity ? tie : 0.0);
-    if (!done() && (!wins || (choice != AxisChoice::Any && !isTouchable<kOfA>(candidate, hint)))) return;
-    separation = found;
+    const double along = separationAlong<kOfA>(pair, candidate, hint);
+    if (along > 0.0) apart = true;
+    if (!done()) {
+      if (along <= separation + tie) return;
+      if (choice != AxisChoice::Any && !isTouchable<kOfA>(candidate, hint)) return;
+    }
+    separation = along;
     edge = candidate;
     support = hint;
     ofA = kOfA;
@@ -36,19 +38,45 @@ struct Search {
     const ConvexShape& self = pair.self<kOfA>();
     const ConvexShape& other = pair.other<kOfA>();
     if (!self.isOutline(candidate)) return false;
-    return other.isWhole() || other.allows(vertex, -pair.toOther<kOfA>(self.normal(candidate)));
+    return other.isWhole() || other.allows(vertex, (-pair.toOther<kOfA>(self.normal(candidate))).vec());
   }
 
-  // The other shape holds a disc of its inner radius about its centroid, so along no axis it can be farther than that
-  // disc: one product an edge, and the support is looked for where that bound beats the best.
+  // Along no axis is the other shape farther away than any of its points: its last support and the two beside it lie
+  // deep behind most edges. A few products an edge; the support is looked for where that bound beats the best.
   template <bool kOfA>
   void all(std::uint32_t hint) {
     const ConvexShape& self = pair.self<kOfA>();
     const ConvexShape& other = pair.other<kOfA>();
-    const Vec2 centre = kOfA ? pair.pose.toWorld(other.centroid()) : pair.pose.toLocal(other.centroid());
-    const double radius = (1.0 - kTie) * other.innerRadius();
-    for (std::uint32_t k = 0; k < self.size() && !done(); ++k)
-      if (self.normal(k).dot(centre - self.vertex(k)) - radius > separation) consider<kOfA>(k, hint);
+    const auto place = [&](std::uint32_t k) { return kOfA ? pair.inA(other.vertex(k)) : pair.inB(other.vertex(k)); };
+    Flat point = place(hint), after = place(other.next(hint)), before = place(other.previous(hint));
+    for (std::uint32_t k = 0; k < self.size(); ++k) {
+      const Flat n = self.normal(k);
+      const double bound = std::min(dot(n, point), std::min(dot(n, after), dot(n, before)));
+      if (bound - dot(n, self.vertex(k)) <= separation) continue;
+      const std::uint32_t last = hint;
+      consider<kOfA>(k, hint);
+      if (done()) return;
+      if (hint == last) continue;
+      point = place(hint);
+      after = place(other.next(hint));
+      before = place(other.previous(hint));
+    }
+  }
+
+  // First the cached edge, then the edge of the other shape that faces it: most often one of them is the best, and what
+  // supports them are the points that rule out all others.
+  template <bool kOfA>
+  void run(std::uint32_t first, std::uint32_t hint) {
+    const ConvexShape& self = pair.self<kOfA>();
+    const ConvexShape& other = pair.other<kOfA>();
+    consider<kOfA>(first, hint);
+    if (done()) return;
+    const Flat facing = -pair.toOther<kOfA>(self.normal(first));
+    const std::uint32_t before = other.previous(hint);
+    std::uint32_t back = first;
+    consider<!kOfA>(dot(other.normal(before), facing) > dot(other.normal(hint), facing) ? before : hint, back);
+    if (!done()) all<kOfA>(hint);
+    if (!done()) all<!kOfA>(back);
   }
 };
 
@@ -56,39 +84,22 @@ std::uint32_t withinSize(std::uint32_t k, const ConvexShape& shape) { return k <
 
 }  // namespace
 
-double separationAlong(const PairFrame& pair, bool ofA, std::uint32_t edge, std::uint32_t& support) {
-  if (ofA) {
-    const Vec2& n = pair.a.normal(edge);
-    support = pair.b.support(-pair.toOther<true>(n), support);
-    return n.dot(pair.armOf<true>(edge, support));
-  }
-  const Vec2& n = pair.b.normal(edge);
-  support = pair.a.support(-pair.toOther<false>(n), support);
-  return n.dot(pair.armOf<false>(edge, support));
-}
-
 SeparatingAxis bestAxis(const PairFrame& pair, const PairCache& cache, AxisChoice choice) {
-  Search search{pair, choice};
-  search.tie = kTie * pair.extent();
+  Search search{pair, choice, kTie * pair.extent()};
   const std::uint32_t a = withinSize(featureIndex(cache.a), pair.a);
   const std::uint32_t b = withinSize(featureIndex(cache.b), pair.b);
-  std::uint32_t onA = a, onB = b;
-  // The last axis first: it is most often still the best, and rules out nearly all others.
   if (isEdge(cache.b) && !isEdge(cache.a)) {
-    search.consider<false>(b, onA);
+    search.run<false>(b, a);
   } else {
-    search.consider<true>(a, onB);
+    search.run<true>(a, b);
   }
-  if (!search.done()) search.all<true>(onB);
-  if (!search.done()) search.all<false>(onA);
-
   SeparatingAxis axis;
   axis.status = search.apart ? PairStatus::Apart : PairStatus::Overlapping;
   axis.separation = search.separation;
   axis.edge = edgeFeature(search.edge);
   axis.ofA = search.ofA;
   axis.support = search.support;
-  axis.normal = search.ofA ? pair.a.normal(search.edge) : Vec2(-pair.pose.rotation.apply(pair.b.normal(search.edge)));
+  axis.normal = search.ofA ? pair.a.normal(search.edge) : (-pair.turned(pair.b.normal(search.edge))).vec();
   return axis;
 }
 

@@ -12,8 +12,13 @@ enum class AxisChoice {
   UntilParting,  // Touchable, but any axis at all that parts the pair ends the search
 };
 
-/// Separation along an edge's normal of the shape that `ofA` names; `support` begins as a hint.
-double separationAlong(const PairFrame& pair, bool ofA, std::uint32_t edge, std::uint32_t& support);
+/// Separation along an edge's normal of the one shape; `support` begins as a hint.
+template <bool kOfA>
+double separationAlong(const PairFrame& pair, std::uint32_t edge, std::uint32_t& support) {
+  const Flat n = pair.self<kOfA>().normal(edge);
+  support = climb(pair.other<kOfA>(), -pair.toOther<kOfA>(n), support);
+  return dot(n, pair.armOf<kOfA>(edge, support));
+}
 
 /// Starts with the edge that the cache names. `status` is Apart where any axis parts the pair, a cut's too. −∞ for
 /// `separation` where no axis is left. Cost: O(n + m).

@@ -20,8 +20,8 @@ void touch(const PairFrame& pair, const SeparatingAxis& axis, ClosestFeatures& c
   const ConvexShape& self = pair.self<kOfA>();
   const ConvexShape& other = pair.other<kOfA>();
   const std::uint32_t edge = featureIndex(axis.edge);
-  const Vec2& n = self.normal(edge);
-  const double length = cross(n, self.vertex(self.next(edge)) - self.vertex(edge));
+  const Flat n = self.normal(edge);
+  const double length = cross(n, Flat(self.vertex(self.next(edge))) - Flat(self.vertex(edge)));
   const double level = axis.separation + kTouching * pair.extent();
   const auto along = [&](std::uint32_t v) { return cross(n, pair.armOf<kOfA>(edge, v)); };
   std::uint32_t vertex = axis.support;
@@ -30,7 +30,7 @@ void touch(const PairFrame& pair, const SeparatingAxis& axis, ClosestFeatures& c
   for (std::uint32_t step = 0; step < other.size() && (at < 0.0 || at > length); ++step) {
     const bool upwards = at < 0.0;  // against the other's order of vertices, which faces ours
     const std::uint32_t neighbour = upwards ? other.previous(vertex) : other.next(vertex);
-    if (n.dot(pair.armOf<kOfA>(edge, neighbour)) > level) break;
+    if (dot(n, pair.armOf<kOfA>(edge, neighbour)) > level) break;
     feature = edgeFeature(upwards ? neighbour : vertex);
     vertex = neighbour;
     const double reached = along(vertex);
@@ -40,13 +40,13 @@ void touch(const PairFrame& pair, const SeparatingAxis& axis, ClosestFeatures& c
       at = reached;
     }
   }
-  const Vec2 onSelf = self.vertex(edge) + std::clamp(at, 0.0, length) * leftNormal(n);
-  const Vec2 onOther = onSelf + axis.separation * n;
+  const Flat onSelf = Flat(self.vertex(edge)) + std::clamp(at, 0.0, length) * leftNormal(n);
+  const Flat onOther = onSelf + axis.separation * n;
   closest.status = axis.separation > 0.0 ? PairStatus::Apart : PairStatus::Near;
   closest.distance = axis.separation;
   closest.normal = axis.normal;
-  closest.onA = kOfA ? onSelf : pair.pose.toWorld(onOther);
-  closest.onB = kOfA ? onOther : pair.pose.toWorld(onSelf);
+  closest.onA = pair.toA<kOfA>(kOfA ? onSelf : onOther);
+  closest.onB = pair.toA<kOfA>(kOfA ? onOther : onSelf);
   cache = kOfA ? PairCache{axis.edge, feature} : PairCache{feature, axis.edge};
 }
 
@@ -58,30 +58,29 @@ void overlap(const SeparatingAxis& axis, ClosestFeatures& closest) {
 
 }  // namespace
 
-ClosestPair closestPair(const PairFrame& pair, PairCache& cache) {
-  ClosestPair answer;
-  ClosestFeatures& closest = answer.closest;
-  if (!pair.isFinite()) return answer;
-  const int limit = static_cast<int>(pair.a.size() + pair.b.size()) + 8;
-  if (walkFeatures(pair, cache, limit, closest) == WalkEnd::Found) return answer;
-
-  answer.axis = bestAxis(pair, cache, AxisChoice::Any);
-  if (!std::isfinite(answer.axis.separation)) return answer;
-  cache = featuresOf(answer.axis);
-  if (answer.axis.separation < 0.0) {
-    overlap(answer.axis, closest);
-  } else if (walkFeatures(pair, cache, limit, closest) == WalkEnd::Found) {
-    return answer;
-  } else if (answer.axis.separation <= kTouching * pair.extent()) {
-    answer.axis.ofA ? touch<true>(pair, answer.axis, closest, cache) : touch<false>(pair, answer.axis, closest, cache);
+SeparatingAxis closestBehind(const PairFrame& pair, PairCache& cache, ClosestFeatures& closest) {
+  const SeparatingAxis axis = bestAxis(pair, cache, AxisChoice::Any);
+  closest.status = PairStatus::Failed;
+  if (!std::isfinite(axis.separation)) return axis;
+  cache = featuresOf(axis);
+  if (axis.separation < 0.0) {
+    overlap(axis, closest);
+  } else if (walkFeatures(pair, cache, stepLimit(pair), closest) == WalkEnd::Found) {
+    return axis;
+  } else if (axis.separation <= kTouching * pair.extent()) {
+    axis.ofA ? touch<true>(pair, axis, closest, cache) : touch<false>(pair, axis, closest, cache);
   }
   closest.a = cache.a;
   closest.b = cache.b;
-  return answer;
+  return axis;
 }
 
 ClosestFeatures closestFeatures(const ConvexShape& a, const ConvexShape& b, const Transform& bInA, PairCache& cache) {
-  return closestPair({a, b, bInA}, cache).closest;
+  const PairFrame pair{a, b, bInA};
+  ClosestFeatures closest;
+  if (!pair.isFinite()) return closest;
+  if (walkFeatures(pair, cache, stepLimit(pair), closest) != WalkEnd::Found) closestBehind(pair, cache, closest);
+  return closest;
 }
 
 }  // namespace froude

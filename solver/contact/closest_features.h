@@ -21,10 +21,12 @@ using Feature = std::uint32_t;
 inline bool isEdge(Feature f) { return (f & 1u) != 0; }
 inline std::uint32_t featureIndex(Feature f) { return f >> 1; }
 
+inline constexpr Feature kNoFeature = ~Feature{0};
+
 /// What a pair remembers from query to query; any value is good to start from, also a stale one of another pair. The
 /// answers of all queries do not depend on it beyond rounding, their cost does.
 struct PairCache {
-  Feature a = 0, b = 0;  // the last closest features, or those of the last axis
+  Feature a = kNoFeature, b = kNoFeature;  // the last closest features, or those of the last axis
   friend bool operator==(const PairCache&, const PairCache&) = default;
 };
 

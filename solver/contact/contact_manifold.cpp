@@ -29,17 +29,16 @@ struct Builder {
   template <bool kOfA>
   void add(std::uint32_t edge, const Clip& clip) {
     if (!(clip.height >= least && clip.height <= most)) return;
-    const ConvexShape& self = pair.self<kOfA>();
-    const Vec2& n = self.normal(edge);
-    const Vec2 at = self.vertex(edge) + clip.along * leftNormal(n) + 0.5 * clip.height * n;
-    manifold.points[manifold.count++] = {kOfA ? at : pair.pose.toWorld(at), clip.height, clip.id};
+    const Flat n = pair.self<kOfA>().normal(edge);
+    const Flat at = Flat(pair.self<kOfA>().vertex(edge)) + clip.along * leftNormal(n) + 0.5 * clip.height * n;
+    manifold.points[manifold.count++] = {pair.toA<kOfA>(at), clip.height, clip.id};
   }
 
   template <bool kOfA>
   Clip vertexOver(std::uint32_t edge, std::uint32_t vertex) const {
-    const Vec2 arm = pair.armOf<kOfA>(edge, vertex);
-    const Vec2& n = pair.self<kOfA>().normal(edge);
-    return {cross(n, arm), n.dot(arm), pointId(!kOfA, vertex, edge)};
+    const Flat arm = pair.armOf<kOfA>(edge, vertex);
+    const Flat n = pair.self<kOfA>().normal(edge);
+    return {cross(n, arm), dot(n, arm), pointId(!kOfA, vertex, edge)};
   }
 
   // Reference edge against the other shape's edge `facing`.
@@ -47,7 +46,7 @@ struct Builder {
   void clip(std::uint32_t edge, std::uint32_t facing) {
     const ConvexShape& self = pair.self<kOfA>();
     const std::uint32_t last = self.next(edge);
-    const double length = cross(self.normal(edge), self.vertex(last) - self.vertex(edge));
+    const double length = cross(Flat(self.normal(edge)), Flat(self.vertex(last)) - Flat(self.vertex(edge)));
     Clip low = vertexOver<kOfA>(edge, pair.other<kOfA>().next(facing));
     Clip high = vertexOver<kOfA>(edge, facing);
     if (low.along > high.along) std::swap(low, high);
@@ -66,14 +65,14 @@ struct Builder {
   void build(std::uint32_t edge, std::uint32_t vertex) {
     const ConvexShape& self = pair.self<kOfA>();
     const ConvexShape& other = pair.other<kOfA>();
-    const Vec2 facing = -pair.toOther<kOfA>(self.normal(edge));
+    const Flat facing = -pair.toOther<kOfA>(self.normal(edge));
     const std::uint32_t previous = other.previous(vertex);
-    bool first = other.normal(previous).dot(facing) > other.normal(vertex).dot(facing);
+    bool first = dot(other.normal(previous), facing) > dot(other.normal(vertex), facing);
     if (!other.isWhole() && other.isOutline(previous) != other.isOutline(vertex)) first = other.isOutline(previous);
     const std::uint32_t incident = first ? previous : vertex;
     if (other.isOutline(incident)) return clip<kOfA>(edge, incident);
     const Clip point = vertexOver<kOfA>(edge, vertex);
-    if (point.along >= 0.0 && cross(self.normal(edge), pair.armOf<kOfA>(self.next(edge), vertex)) <= 0.0)
+    if (point.along >= 0.0 && cross(Flat(self.normal(edge)), pair.armOf<kOfA>(self.next(edge), vertex)) <= 0.0)
       add<kOfA>(edge, point);
   }
 
@@ -116,7 +115,7 @@ struct Builder {
 bool isTouchable(const PairFrame& pair, const ClosestFeatures& closest) {
   const std::uint32_t i = featureIndex(closest.a), j = featureIndex(closest.b);
   const bool a = isEdge(closest.a) ? pair.a.isOutline(i) : pair.a.allows(i, closest.normal);
-  return a && (isEdge(closest.b) ? pair.b.isOutline(j) : pair.b.allows(j, -pair.toOther<true>(closest.normal)));
+  return a && (isEdge(closest.b) ? pair.b.isOutline(j) : pair.b.allows(j, (-pair.turnedBack(closest.normal)).vec()));
 }
 
 void buildNear(const PairFrame& pair, const ClosestFeatures& closest, double margin, ContactManifold& manifold) {
@@ -148,13 +147,16 @@ void buildOverlapping(const PairFrame& pair, SeparatingAxis axis, double margin,
 ContactManifold contactManifold(const ConvexShape& a, const ConvexShape& b, const Transform& bInA, double margin,
                                 PairCache& cache) {
   const PairFrame pair{a, b, bInA};
-  const ClosestPair answer = closestPair(pair, cache);
   ContactManifold manifold;
-  manifold.status = answer.closest.status;
-  if (manifold.status == PairStatus::Overlapping) {
-    buildOverlapping(pair, answer.axis, margin, cache, manifold);
-  } else if (manifold.status != PairStatus::Failed && answer.closest.distance <= margin) {
-    buildNear(pair, answer.closest, margin, manifold);
+  if (!pair.isFinite()) return manifold;
+  ClosestFeatures closest;
+  SeparatingAxis axis;
+  if (walkFeatures(pair, cache, stepLimit(pair), closest) != WalkEnd::Found) axis = closestBehind(pair, cache, closest);
+  manifold.status = closest.status;
+  if (closest.status == PairStatus::Overlapping) {
+    buildOverlapping(pair, axis, margin, cache, manifold);
+  } else if (closest.status != PairStatus::Failed && closest.distance <= margin) {
+    buildNear(pair, closest, margin, manifold);
   }
   return manifold;
 }

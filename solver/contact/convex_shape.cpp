@@ -11,6 +11,8 @@ namespace {
 
 // At a bend smaller than this a vertex of the polygon counts as lying on a straight run [rad].
 constexpr double kStraight = 1e-9;
+// From so many vertices on a search by halves is quicker than a look at all [measured].
+constexpr std::uint32_t kMany = 32;
 
 [[noreturn]] void refuse(const std::string& what) { throw Error("convex shape: " + what); }
 
@@ -59,6 +61,7 @@ std::vector<ConvexShape> ConvexShape::piecesOf(const Polygon& polygon, const Vec
     for (const std::uint32_t v : piece.vertex) shape.vertices_.push_back(polygon.vertices()[v] - origin);
     shape.finish();
     if (pieces.size() > 1) {
+      shape.whole_ = false;
       for (std::size_t k = 0; k < piece.size(); ++k) {
         const std::uint32_t v = piece.vertex[k];
         const Cone cone{normalOf(polygon.previous(v)), normalOf(v)};
@@ -73,12 +76,15 @@ std::vector<ConvexShape> ConvexShape::piecesOf(const Polygon& polygon, const Vec
 }
 
 void ConvexShape::finish() {
-  const std::uint32_t n = size();
+  const auto n = static_cast<std::uint32_t>(vertices_.size());
+  size_ = n;
   normals_.resize(n);
+  corners_.resize(n);
   double area = 0.0;
   Vec2 moment{0.0, 0.0};
   for (std::uint32_t k = 0; k < n; ++k) {
     normals_[k] = rightNormal(vertices_[next(k)] - vertices_[k]).stableNormalized();
+    corners_[k] = {vertices_[k], normals_[k]};
     // From the first vertex, so that a shape far from its frame's origin keeps its digits.
     const Vec2 p = vertices_[k] - vertices_[0];
     const Vec2 q = vertices_[next(k)] - vertices_[0];
@@ -90,6 +96,7 @@ void ConvexShape::finish() {
   innerRadius_ = kInfinity;
   for (std::uint32_t k = 0; k < n; ++k) {
     outerRadius_ = std::max(outerRadius_, (vertices_[k] - centroid_).norm());
+    reach_ = std::max(reach_, vertices_[k].norm());
     innerRadius_ = std::min(innerRadius_, normals_[k].dot(vertices_[k] - centroid_));
   }
   innerRadius_ = std::max(innerRadius_, 0.0);
@@ -101,21 +108,35 @@ Box ConvexShape::box(const Transform& pose) const {
   return box;
 }
 
-// An edge's rise is judged by its unit normal and not by its end points: edges of one rounding step have a direction
-// too, and a plateau of equal products does not end the climb too early.
-std::uint32_t ConvexShape::support(const Vec2& direction, std::uint32_t hint) const {
-  std::uint32_t k = hint < size() ? hint : 0;
-  if (cross(normals_[k], direction) > 0.0) {
-    for (std::uint32_t step = size(); step > 0 && cross(normals_[k], direction) > 0.0; --step) k = next(k);
-  } else {
-    for (std::uint32_t step = size(); step > 0 && cross(normals_[previous(k)], direction) < 0.0; --step)
-      k = previous(k);
+std::uint32_t ConvexShape::farthest(const Vec2& direction) const {
+  const double x = direction.x(), y = direction.y();
+  const auto along = [&](std::uint32_t k) { return x * corners_[k].vertex.x() + y * corners_[k].vertex.y(); };
+  std::uint32_t low = 0, high = size_;
+  if (size_ > kMany) {
+    // Halves the range of normals in which the direction lies, by their angles from the first normal: `low` is not past
+    // it, `high` is. Rounding may put neighbours of a straight run in the wrong order: those around have the last word.
+    const Vec2& first = corners_[0].normal;
+    const auto isBeyond = [&](const Vec2& d) { return cross(first, d) < 0.0; };
+    const bool beyond = isBeyond(direction);
+    while (high - low > 1) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      const Vec2& n = corners_[middle].normal;
+      const bool passed = isBeyond(n) != beyond ? beyond : cross(n, direction) >= 0.0;
+      (passed ? low : high) = middle;
+    }
+    std::uint32_t best = high == size_ ? 0 : high;
+    while (along(next(best)) > along(best)) best = next(best);
+    while (along(previous(best)) > along(best)) best = previous(best);
+    return best;
   }
-  // In the middle of a straight run on the far side both edges are level, and yet it is the lowest vertex.
-  if (normals_[k].dot(direction) < 0.0 && normals_[previous(k)].dot(direction) < 0.0)
-    for (std::uint32_t i = 0; i < size(); ++i)
-      if (direction.dot(vertices_[i] - vertices_[k]) > 0.0) k = i;
-  return k;
+  std::uint32_t best = 0;
+  double most = along(0);
+  for (std::uint32_t k = 1; k < size_; ++k) {
+    const double here = along(k);
+    best = here > most ? k : best;
+    most = here > most ? here : most;
+  }
+  return best;
 }
 
 bool ConvexShape::allows(std::uint32_t vertex, const Vec2& direction) const {

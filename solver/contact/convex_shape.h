@@ -25,12 +25,12 @@ class FROUDE_API ConvexShape {
   /// The convex pieces of a polygon, in the order of `convexPieces`, vertices relative to `origin` [m].
   static std::vector<ConvexShape> piecesOf(const Polygon& polygon, const Vec2& origin = {0.0, 0.0});
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(vertices_.size()); }
+  std::uint32_t size() const { return size_; }
   std::span<const Vec2> vertices() const { return vertices_; }
   /// Unit outward normals of the edges.
   std::span<const Vec2> normals() const { return normals_; }
-  const Vec2& vertex(std::uint32_t k) const { return vertices_[k]; }
-  const Vec2& normal(std::uint32_t k) const { return normals_[k]; }
+  const Vec2& vertex(std::uint32_t k) const { return corners_[k].vertex; }
+  const Vec2& normal(std::uint32_t k) const { return corners_[k].normal; }
   std::uint32_t next(std::uint32_t k) const { return k + 1 == size() ? 0 : k + 1; }
   std::uint32_t previous(std::uint32_t k) const { return k == 0 ? size() - 1 : k - 1; }
 
@@ -38,13 +38,14 @@ class FROUDE_API ConvexShape {
   /// Largest distance of a vertex from the centroid, least distance of an edge's line from it [m].
   double outerRadius() const { return outerRadius_; }
   double innerRadius() const { return innerRadius_; }
+  /// Largest distance of a vertex from the origin of its frame [m].
+  double reach() const { return reach_; }
   Box box(const Transform& pose) const;
-  /// The vertex farthest in `direction` (any length), climbed to from `hint`. Cost: O(size), O(1) where the hint is
-  /// near.
-  std::uint32_t support(const Vec2& direction, std::uint32_t hint) const;
+  /// A vertex that is farthest in `direction` (any length). Cost: O(size) up to 32 vertices, O(log size) beyond.
+  std::uint32_t farthest(const Vec2& direction) const;
 
   /// True for a whole polygon: then all edges and directions can be touched.
-  bool isWhole() const { return cone_.empty(); }
+  bool isWhole() const { return whole_; }
   /// Is the edge one of the polygon's outline, not a cut?
   bool isOutline(std::uint32_t edge) const { return isWhole() || outline_[edge] != 0; }
   /// Can something outside the polygon touch this vertex with `direction` (unit, pointing out of the shape)? True in
@@ -53,6 +54,9 @@ class FROUDE_API ConvexShape {
   bool allows(std::uint32_t vertex, const Vec2& direction) const;
 
  private:
+  struct Corner {  // a vertex and the normal of the edge that begins there, in one cache line
+    Vec2 vertex, normal;
+  };
   struct Cone {          // of the directions in which a vertex of the whole polygon can be touched
     Vec2 before, after;  // the polygon's own normals on both sides
     bool open = false;   // false at a reflex vertex
@@ -60,11 +64,15 @@ class FROUDE_API ConvexShape {
   ConvexShape() = default;
   void finish();
 
+  // What every query reads comes first.
+  std::vector<Corner> corners_;
+  std::uint32_t size_ = 0;
+  bool whole_ = true;
+  Vec2 centroid_{0.0, 0.0};
+  double outerRadius_ = 0.0, innerRadius_ = 0.0, reach_ = 0.0;
   std::vector<Vec2> vertices_, normals_;
   std::vector<std::uint8_t> outline_;  // by edge
   std::vector<Cone> cone_;             // by vertex; empty for a whole polygon
-  Vec2 centroid_{0.0, 0.0};
-  double outerRadius_ = 0.0, innerRadius_ = 0.0;
 };
 
 }  // namespace froude

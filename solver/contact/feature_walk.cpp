@@ -18,15 +18,15 @@ constexpr double kCoincident = 1e-13;
 enum class Step { Found, Moved, Behind };
 
 // Does one of a vertex's two edges come nearer to where `d` leads?
-bool leaves(const Vec2& after, const Vec2& before, const Vec2& d, double tolerance) {
+bool leaves(const Flat& after, const Flat& before, const Flat& d, double tolerance) {
   return cross(after, d) > tolerance || cross(before, d) < -tolerance;
 }
 
 // Which of them: the only one, or where both do, as at the tip of a needle, the one on the side that d leads out of.
 // Its other side comes nearer as well, but lies behind.
-bool isUpper(const Vec2& after, const Vec2& before, const Vec2& d) {
+bool isUpper(const Flat& after, const Flat& before, const Flat& d) {
   if (cross(after, d) <= 0.0) return false;
-  return cross(before, d) >= 0.0 || after.dot(d) >= before.dot(d);
+  return cross(before, d) >= 0.0 || dot(after, d) >= dot(before, d);
 }
 
 struct Walker {
@@ -41,55 +41,63 @@ struct Walker {
 
   Step vertices(std::uint32_t i, std::uint32_t j) {
     const ConvexShape &a = pair.a, &b = pair.b;
-    const Vec2 w = pair.arm(i, j);
-    const Vec2 &afterA = a.normal(i), &beforeA = a.normal(a.previous(i));
-    if (leaves(afterA, beforeA, w, 0.0))
-      return at.a = edgeFeature(isUpper(afterA, beforeA, w) ? i : a.previous(i)), Step::Moved;
-    const Vec2 u = -pair.pose.rotation.applyInverse(w);
-    const Vec2 &afterB = b.normal(j), &beforeB = b.normal(b.previous(j));
-    if (leaves(afterB, beforeB, u, 0.0))
-      return at.b = edgeFeature(isUpper(afterB, beforeB, u) ? j : b.previous(j)), Step::Moved;
-    const double distance = w.norm();
+    const Flat w = pair.arm(i, j);
+    const Flat afterA = a.normal(i), beforeA = a.normal(a.previous(i));
+    const Flat u = -pair.turnedBack(w);
+    const Flat afterB = b.normal(j), beforeB = b.normal(b.previous(j));
+    if (leaves(afterA, beforeA, w, 0.0)) {
+      at.a = edgeFeature(isUpper(afterA, beforeA, w) ? i : a.previous(i));
+      return Step::Moved;
+    }
+    if (leaves(afterB, beforeB, u, 0.0)) {
+      at.b = edgeFeature(isUpper(afterB, beforeB, u) ? j : b.previous(j));
+      return Step::Moved;
+    }
+    const double distance = std::sqrt(dot(w, w));
     // A vertex within a straight run passes the products from behind too, as does an arm of no length.
-    const bool before = std::max(afterA.dot(w), beforeA.dot(w)) > 0.0 && std::max(afterB.dot(u), beforeB.dot(u)) > 0.0;
+    const bool before =
+        std::max(dot(afterA, w), dot(beforeA, w)) > 0.0 && std::max(dot(afterB, u), dot(beforeB, u)) > 0.0;
     if (!before || distance < kCoincident * pair.extent()) return Step::Behind;
     found.distance = distance;
     found.onA = a.vertex(i);
-    found.onB = a.vertex(i) + w;
-    found.normal = w / distance;
+    found.onB = (Flat(a.vertex(i)) + w).vec();
+    found.normal = ((1.0 / distance) * w).vec();
     return Step::Found;
   }
 
+  // `isFirst`: the pair may be the one that overlapped in the last query, and most likely still does.
   template <bool kOfA>
-  Step edgeAndVertex(std::uint32_t edge, std::uint32_t vertex) {
+  Step edgeAndVertex(std::uint32_t edge, std::uint32_t vertex, bool isFirst) {
     const ConvexShape& self = pair.self<kOfA>();
     const ConvexShape& other = pair.other<kOfA>();
-    const Vec2& n = self.normal(edge);
+    const Flat n = self.normal(edge);
     const std::uint32_t last = self.next(edge);
-    const Vec2 arm = pair.armOf<kOfA>(edge, vertex);
+    const Flat arm = pair.armOf<kOfA>(edge, vertex);
+    const double height = dot(n, arm);
+    if (isFirst && height < 0.0) return Step::Behind;
     if (cross(n, arm) < 0.0) return move<kOfA>(vertexFeature(edge), vertexFeature(vertex)), Step::Moved;
     if (cross(n, pair.armOf<kOfA>(last, vertex)) > 0.0)
       return move<kOfA>(vertexFeature(last), vertexFeature(vertex)), Step::Moved;
-    const double height = n.dot(arm);
     if (height < 0.0) return Step::Behind;
-    const Vec2 facing = -pair.toOther<kOfA>(n);
+    const Flat facing = -pair.toOther<kOfA>(n);
     const std::uint32_t previous = other.previous(vertex);
-    const Vec2 &after = other.normal(vertex), &before = other.normal(previous);
+    const Flat after = other.normal(vertex), before = other.normal(previous);
     if (leaves(after, before, facing, kParallel)) {
       if (isUpper(after, before, facing)) return descend<kOfA>(edge, vertex, other.next(vertex));
       return descend<kOfA>(edge, previous, previous);
     }
     if (cross(after, facing) >= -kParallel) return parallelOf<kOfA>(edge, vertex);
     if (cross(before, facing) <= kParallel) return parallelOf<kOfA>(edge, previous);
-    const Vec2 normal = kOfA ? n : facing;
     found.distance = height;
-    found.normal = normal;
     if constexpr (kOfA) {
-      found.onB = self.vertex(edge) + arm;
-      found.onA = found.onB - height * normal;
+      const Flat onB = Flat(self.vertex(edge)) + arm;
+      found.normal = n.vec();
+      found.onA = (onB - height * n).vec();
+      found.onB = onB.vec();
     } else {
+      found.normal = facing.vec();
       found.onA = other.vertex(vertex);
-      found.onB = found.onA + height * normal;
+      found.onB = (Flat(other.vertex(vertex)) + height * facing).vec();
     }
     return Step::Found;
   }
@@ -99,7 +107,7 @@ struct Walker {
   template <bool kOfA>
   Step descend(std::uint32_t edge, std::uint32_t down, std::uint32_t lower) {
     const ConvexShape& self = pair.self<kOfA>();
-    const Vec2& n = self.normal(edge);
+    const Flat n = self.normal(edge);
     const std::uint32_t last = self.next(edge);
     if (cross(n, pair.armOf<kOfA>(edge, lower)) < 0.0) {
       move<kOfA>(vertexFeature(edge), edgeFeature(down));
@@ -120,54 +128,64 @@ struct Walker {
   // Two edges that face each other: the answer is the middle of what they share, so that it does not depend on the
   // vertex the walk came from. `surely`: the walk came from a vertex in the slab.
   Step parallel(std::uint32_t i, std::uint32_t j, bool surely) {
-    const Vec2& n = pair.a.normal(i);
-    const Vec2 m = pair.pose.rotation.apply(pair.b.normal(j));
-    if (n.dot(m) > 0.0) return surely ? Step::Behind : leaveEdges(i, j);
+    const Flat n = pair.a.normal(i);
+    const Flat m = pair.turned(pair.b.normal(j));
+    if (dot(n, m) > 0.0) return surely ? Step::Behind : leaveEdges(i, j);
     if (!surely && std::abs(cross(n, m)) > kParallel) return leaveEdges(i, j);
-    const Vec2 first = pair.arm(i, j), second = pair.arm(i, pair.b.next(j));
-    const double length = cross(n, pair.a.vertex(pair.a.next(i)) - pair.a.vertex(i));
+    const Flat first = pair.arm(i, j), second = pair.arm(i, pair.b.next(j));
+    const double length = cross(n, Flat(pair.a.vertex(pair.a.next(i))) - Flat(pair.a.vertex(i)));
     const double low = std::max(0.0, cross(n, second)), high = std::min(length, cross(n, first));
-    const double height = n.dot(first);
+    const double height = dot(n, first);
     if (!surely && low > high) return leaveEdges(i, j);
     if (height < 0.0) return Step::Behind;
+    const Flat onA = Flat(pair.a.vertex(i)) + 0.5 * (low + high) * leftNormal(n);
     found.distance = height;
-    found.normal = n;
-    found.onA = pair.a.vertex(i) + 0.5 * (low + high) * leftNormal(n);
-    found.onB = found.onA + height * n;
+    found.normal = n.vec();
+    found.onA = onA.vec();
+    found.onB = (onA + height * n).vec();
     return Step::Found;
   }
 
   Step leaveEdges(std::uint32_t i, std::uint32_t j) {
     // The end of B's edge that turned towards A's.
-    const Vec2 m = pair.pose.rotation.apply(pair.b.normal(j));
-    at = {edgeFeature(i), vertexFeature(cross(pair.a.normal(i), m) < 0.0 ? j : pair.b.next(j))};
+    const Flat m = pair.turned(pair.b.normal(j));
+    at = {edgeFeature(i), vertexFeature(cross(Flat(pair.a.normal(i)), m) < 0.0 ? j : pair.b.next(j))};
     return Step::Moved;
   }
 
-  Step step() {
+  Step step(bool isFirst) {
     const std::uint32_t i = featureIndex(at.a), j = featureIndex(at.b);
-    if (isEdge(at.a)) return isEdge(at.b) ? parallel(i, j, false) : edgeAndVertex<true>(i, j);
-    return isEdge(at.b) ? edgeAndVertex<false>(j, i) : vertices(i, j);
+    if (isEdge(at.a)) return isEdge(at.b) ? parallel(i, j, false) : edgeAndVertex<true>(i, j, isFirst);
+    return isEdge(at.b) ? edgeAndVertex<false>(j, i, isFirst) : vertices(i, j);
   }
 };
+
+// The vertices that lie farthest towards the other shape's centroid: near the answer for round shapes, and never
+// behind.
+PairCache firstGuess(const PairFrame& pair) {
+  const Flat towards = pair.inA(pair.b.centroid()) - Flat(pair.a.centroid());
+  return {vertexFeature(pair.a.farthest(towards.vec())),
+          vertexFeature(pair.b.farthest((-pair.turnedBack(towards)).vec()))};
+}
 
 }  // namespace
 
 WalkEnd walkFeatures(const PairFrame& pair, PairCache& features, int limit, ClosestFeatures& found) {
-  if (featureIndex(features.a) >= pair.a.size()) features.a = 0;
-  if (featureIndex(features.b) >= pair.b.size()) features.b = 0;
-  Walker walker{pair, features, found};
-  for (int count = 1; count <= limit; ++count) {
-    ++found.steps;
-    const Step step = walker.step();
-    if (step == Step::Moved) continue;
-    if (step == Step::Behind) return WalkEnd::Behind;
-    found.a = features.a;
-    found.b = features.b;
-    found.status = found.distance > 0.0 ? PairStatus::Apart : PairStatus::Near;
-    return WalkEnd::Found;
-  }
-  return WalkEnd::TooLong;
+  if (featureIndex(features.a) >= pair.a.size() || featureIndex(features.b) >= pair.b.size())
+    features = firstGuess(pair);
+  PairCache at = features;
+  Walker walker{pair, at, found};
+  Step step = walker.step(true);
+  int count = 1;
+  for (; step == Step::Moved && count < limit; ++count) step = walker.step(false);
+  found.steps += count;
+  features = at;
+  if (step == Step::Moved) return WalkEnd::TooLong;
+  if (step == Step::Behind) return WalkEnd::Behind;
+  found.a = at.a;
+  found.b = at.b;
+  found.status = found.distance > 0.0 ? PairStatus::Apart : PairStatus::Near;
+  return WalkEnd::Found;
 }
 
 }  // namespace froude

@@ -21,7 +21,8 @@ struct TimeOfImpact {
 
 /// Conservative advancement over the closest features, from t = 0 to `duration` [s] ≥ 0. `target` [m] > 0 is the
 /// distance that counts as touching, met to a tenth of it. Pairs that start nearer than the target and part are
-/// Separate; that come closer, Hit at 0.
+/// Separate; that come closer, Hit at 0. At most 100 steps and 20 for each radian of turning, 10,000 in all; a few
+/// where nothing grazes.
 FROUDE_API TimeOfImpact timeOfImpact(const ConvexShape& a, const RigidMotion& motionA, const ConvexShape& b,
                                      const RigidMotion& motionB, double duration, double target);
 

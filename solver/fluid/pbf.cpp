@@ -23,9 +23,19 @@ constexpr double kTolerance = 2e-4;     // mean density gained in a sub-step
 constexpr double kRelaxation = 0.6;     // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
 constexpr float kStabilization = 0.3f;  // share of the density error that is shifted away a sub-step
 constexpr float kLoose = 0.02f;         // below 1 − this a particle is free to be compressed
+constexpr float kNever = 1e6f;          // density at which a film bears
 constexpr float kSmoothing = 0.05f;  // XSPH (the paper's eq. 17), times √κ: a viscosity of 0.05·dx·√p, on any step
 constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
 constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
+
+// What is left of a velocity that does not go into any of the walls that the path met.
+Vec2 alongWalls(Vec2 v, const PathResult& path) {
+  for (int k = 0; k < path.contacts; ++k) {
+    const PathResult::Impulse& wall = path.impulses[static_cast<std::size_t>(k)];
+    v -= std::min(0.0, (v - wall.surfaceVelocity).dot(wall.normal)) * wall.normal;
+  }
+  return v;
+}
 
 }  // namespace
 
@@ -264,6 +274,11 @@ void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
       target_[i] = density[i] == 0.0f ? 0.0f : std::max(density[i], 1.0f - kLoose);
     }
   });
+  // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
+  walls_.forEachFilm([&](std::uint32_t i) {
+    target_[i] = kNever;
+    kappa_[i] = 0.0f;
+  });
   // A jet that comes out becomes dense row by row; that is no compression.
   for (const Carried& c : carried_) target_[c.particle] = 0.0f;
   runDisplacement(context, kappa_.data(), nullptr);
@@ -335,6 +350,8 @@ void Pbf::judgeDensity(const StepContext& context, ParticlePool& pool, StepStats
   const auto density = pool.column(density_), pressure = pool.column(pressure_);
   const std::size_t n = pool.size();
   const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
+  // A film is as dense as its gap is narrow; that is no compression of the fluid. 0: when it comes out it is new.
+  walls_.forEachFilm([&](std::uint32_t i) { density[i] = 0.0f; });
   struct Part {
     double compression;
     float density, pressure;
@@ -391,8 +408,19 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
       const Vec2 v = (to - at) / dt;
       followPath(context.obstacles, at, v, dt, point, path);
       if (path.contacts > 0) {
-        contacts_.addMean(i, path, at, v, dt);
+        // Where it stops is one thing, what it keeps of its velocity another: the shift of the stabilisation is no
+        // velocity, and one that a wall stops is none either.
+        const Vec2 solved =
+            dx_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
+        const Vec2 before = v + solved / dt;
+        const Vec2 after = alongWalls(before, path);
+        const Vec2 shift = (path.x - at - dt * after) / dx_;
+        shiftX_[i] = solvedX_[i] + static_cast<float>(shift.x());
+        shiftY_[i] = solvedY_[i] + static_cast<float>(shift.y());
         to = path.x;
+        path.x = at + dt * after;
+        contacts_.addMean(i, path, at, before, dt);
+        path.x = to;
       }
       if (const PathLeak leak = checkPath(context.obstacles, at, to, point, path); leak.leaked) {
         // Only what is squeezed can be here: it has no free place.

@@ -13,7 +13,11 @@ namespace {
 // the wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start
 // over-dense.
 constexpr double kRecession = 0.0856018;
-constexpr float kMostFilled = 0.6f;        // a particle with more wall around it has no one wall to go along
+constexpr float kMostFilled = 0.6f;  // a particle with more wall around it has no one wall to go along
+// A particle with more wall round it than this, by walls that face each other, is a film that is not resolved (the gap
+// is narrower than about half a spacing). One row of particles can not give way to what shuts the gap.
+constexpr float kFilm = 0.6f;
+constexpr double kOpposed = 0.5;           // of the walls' gradients' lengths is left of their sum
 constexpr double kSmallestDistance = 0.1;  // [dx] to a wall that a particle sticks to; it moves with it then
 constexpr double kLongestMiter = 4.0;      // of the recession, at needles
 
@@ -63,6 +67,7 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
     block.words.reserve(kBlockSize);
     block.links.clear();
     block.words.clear();
+    block.films.clear();
     for (AlignedArray<float>* a : {&lambda_, &gradientX_, &gradientY_, &tangent_}) {
       std::fill(a->begin() + begin, a->begin() + end, 0.0f);
     }
@@ -115,8 +120,10 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   std::array<WallShare, kMaxWallEdges> shares;
   const std::size_t owners =
       thick ? integrateSolids({buffer.data(), front}, shares) : integrateWalls({buffer.data(), front}, shares);
+  double pulls = 0.0;
   for (std::size_t k = 0; k < owners; ++k) {
     const WallShare& share = shares[k];
+    pulls += share.gradient.norm();
     lambda_[i] += static_cast<float>(share.lambda);
     gradientX_[i] += static_cast<float>(share.gradient.x());
     gradientY_[i] += static_cast<float>(share.gradient.y());
@@ -131,6 +138,7 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
     if (drag && obstacles.sticks(share.owner)) findDrag({whole.data(), n}, link);
     block.links.push_back(link);
   }
+  if (lambda_[i] > kFilm && std::hypot(gradientX_[i], gradientY_[i]) < kOpposed * pulls) block.films.push_back(i);
   const float steepness = gradientX_[i] * gradientX_[i] + gradientY_[i] * gradientY_[i];
   if (lambda_[i] < kMostFilled && steepness > 1e-6f) tangent_[i] = lambda_[i] / ((1.0f - lambda_[i]) * steepness);
 }

@@ -59,12 +59,20 @@ class WallLayer {
       }
     }
   }
+  /// visit(particle) for each particle in a gap between two owners that is too narrow for it, in increasing order.
+  template <typename Visit>
+  void forEachFilm(Visit&& visit) const {
+    for (std::size_t b = 0; b < used_; ++b) {
+      for (const std::uint32_t i : blocks_[b].films) visit(i);
+    }
+  }
   std::size_t memoryBytes() const;
 
  private:
   struct Block {
     AlignedArray<WallLink> links;
     AlignedArray<std::uint64_t> words;
+    AlignedArray<std::uint32_t> films;
   };
   void integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y,
                  std::uint32_t i, Block& block);

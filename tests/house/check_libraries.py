@@ -10,7 +10,7 @@ from tree import read, report
 BUILD_NAMES = {
     "TBB": "oneTBB", "Eigen3": "Eigen", "hwy": "Highway", "nlohmann_json": "JSON for Modern C++", "tomlplusplus": "toml++",
     "muparser": "muParser", "cairo": "Cairo", "GTest": "GoogleTest", "benchmark": "Google Benchmark",
-    "LibXml2": "libxml2", "polyclipping": "Clipper",
+    "LibXml2": "libxml2", "polyclipping": "Clipper", "box2d": "Box2D", "ccd": "libccd",
 }
 NOT_LIBRARIES = {"PkgConfig", "Git", "Threads", "Python3"}
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <froude/base/error.h>
+#include <froude/solver/contact/pair_frame.h>
 
 #include "support/convex_pairs.h"
 
@@ -51,17 +52,18 @@ TEST(ConvexShape, the_pieces_of_an_l_know_their_cut) {
   EXPECT_EQ(edges, 8);
 }
 
-TEST(ConvexShape, the_support_is_the_farthest_vertex_from_any_hint) {
+TEST(ConvexShape, the_farthest_vertex_is_found_from_nowhere_and_climbed_to_from_any_hint) {
   RandomStream random(7, 3);
-  for (const std::vector<Vec2>& ring : {straightRun(9), roundRing(random, 40), rectangle(1, 1e-6)}) {
+  for (const std::vector<Vec2>& ring : {straightRun(9), straightRun(60), roundRing(random, 40), rectangle(1, 1e-6)}) {
     const ConvexShape shape(ring);
-    for (int k = 0; k < 64; ++k)
-      for (std::uint32_t hint = 0; hint < shape.size(); ++hint) {
-        const Vec2 d = unit(k * kPi / 32.0);
-        double farthest = -kInfinity;
-        for (const Vec2& v : ring) farthest = std::max(farthest, v.dot(d));
-        ASSERT_NEAR(shape.vertex(shape.support(d, hint)).dot(d), farthest, 1e-14);
-      }
+    for (int k = 0; k < 64; ++k) {
+      const Vec2 d = unit(k * kPi / 32.0);
+      double farthest = -kInfinity;
+      for (const Vec2& v : ring) farthest = std::max(farthest, v.dot(d));
+      ASSERT_NEAR(shape.vertex(shape.farthest(d)).dot(d), farthest, 1e-14) << k;
+      for (std::uint32_t hint = 0; hint < shape.size(); ++hint)
+        ASSERT_NEAR(shape.vertex(climb(shape, d, hint)).dot(d), farthest, 1e-14) << k << ' ' << hint;
+    }
   }
 }
 
