@@ -1,5 +1,5 @@
 // What of a scene's free bodies runs but is probably not meant: overlaps at the start, hinges far away, bodies that
-// reach out of the domain.
+// reach out of the domain or might cross its periodic sides.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,6 +91,7 @@ class FreeBodyJudge {
 
   void judge() {
     judgeOverlaps();
+    judgePeriods();
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       if (bodies_[i].motion != Motion::Free) continue;
       judgeHinge(i);
@@ -140,6 +141,19 @@ class FreeBodyJudge {
         fmt::format("overlaps body.{} at the start, by about {:.2g} m: they are pushed apart gently; right is a "
                     "place where they touch at most, or filters that let them pass",
                     bodies_[b].name, depth));
+  }
+
+  void judgePeriods() {
+    const DomainDef& domain = draft_.scene.world.domain;
+    if (!domain.periodicX && !domain.periodicY) return;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i].motion != Motion::Free || bodies_[i].hinge) continue;
+      draft_.warn(
+          draft_.bodyPlaces[i], draft_.bodyPaths[i] + ".motion",
+          "free bodies are not carried across a periodic side: one that gets there leaves the domain; right are "
+          "walls, open sides or a hinge");
+      return;
+    }
   }
 
   void judgeHinge(std::size_t i) {

@@ -135,6 +135,15 @@ TEST(SceneFree, what_reaches_out_of_the_domain_is_said) {
   EXPECT_TRUE(warningsOf(kHead + box("a", 0.05, 0.5, "")).empty());
 }
 
+TEST(SceneFree, a_free_body_between_periodic_sides_is_said_once) {
+  const std::string periodic = kHead + "periodic = [\"x\"]\n";
+  const std::vector<std::string> w = warningsOf(periodic + box("a", 0.5, 0.5) + box("b", 1.5, 0.5));
+  ASSERT_EQ(w.size(), 1u);
+  EXPECT_EQ(w[0].rfind("body.a.motion: free bodies are not carried across a periodic side", 0), 0u) << w[0];
+  EXPECT_TRUE(warningsOf(periodic + box("a", 0.5, 0.5) + "hinge = { at = [0.5, 0.5] }\n").empty());
+  EXPECT_TRUE(warningsOf(periodic + box("a", 0.5, 0.5, "")).empty());
+}
+
 TEST(SceneFree, a_hinge_far_from_its_body_is_said) {
   const std::vector<std::string> w = warningsOf(kHead + box("a", 0.5, 0.5) + "hinge = { at = [0.0, 0.0] }\n");
   ASSERT_EQ(w.size(), 1u);
