@@ -60,7 +60,7 @@ struct World::Impl {
   void publishBodies(double dt);
   BodyState stateOf(std::size_t body) const;
   void account(const StepStats& stats, double dt);
-  bool needsUndo() const { return fluidModel != nullptr; }
+  bool needsUndo() const { return fluidModel != nullptr || (bullets != nullptr && bodies.anyFree()); }
   bool anyParticles() const { return fluid != nullptr || bullets != nullptr; }
   void archive(Archive& a);
 

@@ -231,27 +231,29 @@ void World::Impl::publishBodies(double dt) {
 void World::Impl::judge(StepStats& stats, double dt) {
   judged.reset();
   membersChanged = false;
-  if (stats.trouble != Trouble::None || fluidModel == nullptr) return;
+  if (stats.trouble != Trouble::None || !needsUndo()) return;
   judged = balance();
   const Balance& after = *judged;
   auto fail = [&](Trouble why, double value, double limit) {
     stats.trouble = why;
     stats.troubleValue = value;
     stats.troubleLimit = limit;
-    stats.troubleAt = fastestParticle();
+    if (fluidModel != nullptr) stats.troubleAt = fastestParticle();
   };
   if (!after.finite || !std::isfinite(stats.maxCompression)) {
     fail(Trouble::NonFinite, std::nan(""), 0.0);
     return;
   }
-  const double travel = after.maxSpeed * dt / fluidModel->supportRadius();
-  if (travel > def.limits.displacement) {
-    fail(Trouble::Displacement, travel, def.limits.displacement);
-    return;
-  }
-  if (stats.maxCompression > def.limits.compression) {
-    fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
-    return;
+  if (fluidModel != nullptr) {
+    const double travel = after.maxSpeed * dt / fluidModel->supportRadius();
+    if (travel > def.limits.displacement) {
+      fail(Trouble::Displacement, travel, def.limits.displacement);
+      return;
+    }
+    if (stats.maxCompression > def.limits.compression) {
+      fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
+      return;
+    }
   }
   const double gain = (after.energy() - ledger.energy0 - ledger.work - outsideWork(stats, after, dt)) / energyScale();
   if (gain > def.limits.energyGain) fail(Trouble::EnergyGain, gain, def.limits.energyGain);

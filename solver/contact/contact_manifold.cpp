@@ -1,6 +1,7 @@
 // Clips the edge that faces the reference edge against the reference edge's two ends.
 #include <froude/solver/contact/contact_manifold.h>
 
+#include <froude/solver/contact/axis_search.h>
 #include <froude/solver/contact/closest_pair.h>
 
 namespace froude {
@@ -96,6 +97,28 @@ struct Builder {
     }
   }
 
+  // The best axis of the four edges that meet at a vertex of each.
+  SeparatingAxis axisAt(std::uint32_t i, std::uint32_t j) const {
+    SeparatingAxis best;
+    best.separation = -kInfinity;
+    for (const std::uint32_t edge : {pair.a.previous(i), i}) {
+      std::uint32_t support = j;
+      const double separation = separationAlong<true>(pair, edge, support);
+      if (separation <= best.separation) continue;
+      best.separation = separation;
+      best.normal = pair.a.normal(edge), best.edge = 2 * edge + 1, best.ofA = true, best.support = support;
+    }
+    for (const std::uint32_t edge : {pair.b.previous(j), j}) {
+      std::uint32_t support = i;
+      const double separation = separationAlong<false>(pair, edge, support);
+      if (separation <= best.separation) continue;
+      best.separation = separation;
+      best.normal = (-pair.turned(pair.b.normal(edge))).vec(), best.edge = 2 * edge + 1, best.ofA = false;
+      best.support = support;
+    }
+    return best;
+  }
+
   void fromFeatures(const ClosestFeatures& closest) {
     manifold.normal = closest.normal;
     const std::uint32_t i = featureIndex(closest.a), j = featureIndex(closest.b);
@@ -103,6 +126,12 @@ struct Builder {
       isEdge(closest.b) ? clip<true>(i, j) : build<true>(i, j);
     } else if (isEdge(closest.b)) {
       build<false>(j, i);
+    } else if (const SeparatingAxis axis = axisAt(i, j);
+               axis.separation >= closest.distance - kOnePoint * pair.extent()) {
+      fromAxis(axis);
+      if (manifold.count == 2) return;  // corners of faces that are flush
+      manifold.count = 0;
+      manifold.normal = closest.normal;
     }
     // Two vertices; or features that touch to rounding, and miss each other by as much when they are clipped.
     if (manifold.count > 0) return;

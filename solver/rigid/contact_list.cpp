@@ -127,9 +127,21 @@ void ContactList::findReach(const BodyPoses& poses, Crew& crew) {
   });
 }
 
+void ContactList::findStir(const BodyPoses& poses) {
+  stir_.assign(poses.pose.size(), 0.0);
+  for (const Contact& c : contacts_) {
+    const double apart = (poses.drift[c.bodyB] - poses.drift[c.bodyA]).norm();
+    for (const std::uint32_t i : {c.bodyA, c.bodyB}) {
+      if (poses.thickness[i] < kInfinity) {
+        stir_[i] = std::max(stir_[i], std::min(apart, kLargestMargin * poses.thickness[i]));
+      }
+    }
+  }
+}
+
 bool ContactList::leftItsBox() const {
   for (std::size_t p = 0; p < proxies_.size(); ++p) {
-    if (!contains(fat_[p], reach_[p])) return true;
+    if (!contains(fat_[p], reach_[p].grown(stir_[proxies_[p].body]))) return true;
   }
   return false;
 }
@@ -211,12 +223,13 @@ void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
   if (poses.still[contact.bodyA] != 0 && poses.still[contact.bodyB] != 0) return;
   const Contact last = contact;
   contact.count = 0;
-  if (!reach_[contact.a].overlaps(reach_[contact.b])) return;
+  const double stir = stir_[contact.bodyA] + stir_[contact.bodyB];
+  if (!reach_[contact.a].grown(stir).overlaps(reach_[contact.b])) return;
   const ConvexShape& a = shape(contact.a);
   const ConvexShape& b = shape(contact.b);
   const Transform& frame = poses.pose[contact.bodyA];
   const double margin =
-      std::min(poses.closing(contact.bodyA, contact.bodyB),
+      std::min(poses.closing(contact.bodyA, contact.bodyB) + stir,
                kLargestMargin * std::min(poses.thickness[contact.bodyA], poses.thickness[contact.bodyB]));
   const ContactManifold m = contactManifold(a, b, poseIn(frame, poses.pose[contact.bodyB]), margin, contact.cache);
   contact.count = m.count;
@@ -226,14 +239,15 @@ void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
     point = {frame.toWorld(m.points[k].at), m.points[k].separation, 0.0, 0.0, m.points[k].id};
     for (std::uint32_t old = 0; old < last.count; ++old) {
       if (last.points[old].id != point.id) continue;
-      point.normalImpulse = last.points[old].normalImpulse;
-      point.tangentImpulse = last.points[old].tangentImpulse;
+      point.normalForce = last.points[old].normalForce;
+      point.tangentForce = last.points[old].tangentForce;
     }
   }
 }
 
 void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& crew) {
   findReach(poses, crew);
+  findStir(poses);
   if (stale_ || leftItsBox()) {
     for (std::size_t p = 0; p < proxies_.size(); ++p) {
       const Proxy& proxy = proxies_[p];
@@ -241,9 +255,10 @@ void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& cr
       fat_[p] = reach_[p];
       if (wall) continue;
       extend(fat_[p], kStepsAhead * poses.drift[proxy.body]);
-      fat_[p] = fat_[p].grown(kSkin * proxy.shape->outerRadius() + poses.spread[proxy.body]);
+      fat_[p] = fat_[p].grown(kSkin * proxy.shape->outerRadius() + poses.spread[proxy.body] + stir_[proxy.body]);
     }
     pairAnew(bodies);
+    findStir(poses);
     stale_ = false;
   }
   crew.stage(contacts_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -264,7 +279,7 @@ void ContactList::archive(Archive& a) {
       whole.push_back(v);
     }
     for (const ContactPoint& p : c.points) {
-      for (const double v : {p.at.x(), p.at.y(), p.separation, p.normalImpulse, p.tangentImpulse}) real.push_back(v);
+      for (const double v : {p.at.x(), p.at.y(), p.separation, p.normalForce, p.tangentForce}) real.push_back(v);
     }
     real.push_back(c.normal.x()), real.push_back(c.normal.y());
   }
@@ -288,7 +303,7 @@ void ContactList::archive(Archive& a) {
     c.bodyA = proxies_[c.a].body, c.bodyB = proxies_[c.b].body;
     const double* r = real.data() + 12 * k;
     for (ContactPoint& p : c.points) {
-      p.at = {r[0], r[1]}, p.separation = r[2], p.normalImpulse = r[3], p.tangentImpulse = r[4];
+      p.at = {r[0], r[1]}, p.separation = r[2], p.normalForce = r[3], p.tangentForce = r[4];
       r += 5;
     }
     c.normal = {r[0], r[1]};

@@ -18,11 +18,11 @@ struct Proxy {
   std::uint64_t key = 0;   // by slot of the body and piece: lasts while bodies come and go; walls come last
 };
 
-/// One point of a contact and the impulses that it had in the last sub-step [kg·m/s per metre of depth].
+/// One point of a contact and the forces that it bore in its last sub-step [N/m].
 struct ContactPoint {
   Vec2 at{0, 0};            // world [m], when it was found
   double separation = 0.0;  // [m]
-  double normalImpulse = 0.0, tangentImpulse = 0.0;
+  double normalForce = 0.0, tangentForce = 0.0;
   std::uint32_t id = 0;
 };
 
@@ -85,6 +85,7 @@ class ContactList {
     std::vector<ConvexShape> pieces;
   };
   void findReach(const BodyPoses& poses, Crew& crew);
+  void findStir(const BodyPoses& poses);
   bool leftItsBox() const;
   void pairAnew(const BodySet& bodies);
   void sweepAlongX(const BodySet& bodies);
@@ -98,6 +99,9 @@ class ContactList {
   std::vector<std::uint32_t> firstProxy_;  // by body, and the end
   std::vector<double> thickness_;
   std::vector<Box> reach_, fat_;  // by proxy
+  // How much a body may be thrown from its way in the step: the largest difference to the ways of those near it, at
+  // most the largest margin [m].
+  std::vector<double> stir_;
   std::vector<Contact> contacts_, before_;
   std::vector<std::uint32_t> order_;         // proxies along x
   std::vector<std::uint32_t> byKey_, rank_;  // proxies by key, and each one's place there

@@ -54,9 +54,9 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
     };
     p.inverseNormalMass = inverseMassAlong(c.normal);
     p.tangentMass = 1.0 / inverseMassAlong(tangent);
-    p.normalImpulse = at.normalImpulse;
-    p.tangentImpulse = at.tangentImpulse;
-    p.normalSum = p.tangentSum = p.approach = p.rebound = 0.0;
+    p.normalImpulse = settings_.h * at.normalForce;
+    p.tangentImpulse = settings_.h * at.tangentForce;
+    p.normalSum = p.tangentSum = p.approach = 0.0;
   }
   const Point &p = c.points[0], &q = c.points[1];
   c.coupling = c.count < 2 ? 0.0
@@ -222,8 +222,6 @@ void ContactSolver::warmStart(std::vector<SolverBody>& bodies, Crew& crew) {
   forEachColour(crew, [&](Constraint& c) {
     for (std::uint32_t i = 0; i < c.count; ++i) {
       Point& p = c.points[i];
-      // A blow is over with its sub-step; what is borne goes on.
-      if (p.rebound > 0.0) p.normalImpulse = p.tangentImpulse = p.rebound = 0.0;
       p.normalSum += p.normalImpulse;
       p.tangentSum += p.tangentImpulse;
       const double x = p.normalImpulse * c.normal.x() - p.tangentImpulse * c.normal.y();
@@ -233,44 +231,69 @@ void ContactSolver::warmStart(std::vector<SolverBody>& bodies, Crew& crew) {
   });
 }
 
-void ContactSolver::rub(Constraint& c, SolverBody& a, SolverBody& b) const {
+// Coulomb's law at one point, with what bears on it now.
+void ContactSolver::rub(const Constraint& c, Point& p, SolverBody& a, SolverBody& b) {
   const double nx = c.normal.x(), ny = c.normal.y();
-  for (std::uint32_t i = 0; i < c.count; ++i) {
-    Point& p = c.points[i];
-    const double vx = b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y();
-    const double vy = b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x();
-    const double slip = vy * nx - vx * ny - c.belt;
-    const double grip = c.friction * p.normalImpulse;
-    const double impulse = std::clamp(p.tangentImpulse - p.tangentMass * slip, -grip, grip);
-    const double change = impulse - p.tangentImpulse;
-    p.tangentImpulse = impulse;
-    p.tangentSum += change;
-    apply(c, p.armA, p.armB, -change * ny, change * nx, a, b);
-  }
+  const double vx = b.vx - b.w * p.armB.y() - a.vx + a.w * p.armA.y();
+  const double vy = b.vy + b.w * p.armB.x() - a.vy - a.w * p.armA.x();
+  const double slip = vy * nx - vx * ny - c.belt;
+  const double grip = c.friction * p.normalImpulse;
+  const double impulse = std::clamp(p.tangentImpulse - p.tangentMass * slip, -grip, grip);
+  const double change = impulse - p.tangentImpulse;
+  p.tangentImpulse = impulse;
+  p.tangentSum += change;
+  apply(c, p.armA, p.armB, -change * ny, change * nx, a, b);
 }
 
 // Newton's law of restitution where they touch already: blow by blow, as each is handed on.
 void ContactSolver::keepApart(Constraint& c, SolverBody& a, SolverBody& b) const {
-  std::array<double, 2> rest{0.0, 0.0};
+  std::array<double, 2> least;
+  std::array<bool, 2> blow{false, false};
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
     const double room = std::max(0.0, separationNow(c.normal, p, a, b));
     const double v = normalVelocity(c.normal, p, a, b);
-    if (room <= c.touching && v < -settings_.restitutionAbove) p.rebound = std::max(p.rebound, -c.restitution * v);
-    const double wanted = p.rebound > 0.0 ? p.rebound : -room / settings_.h;
-    rest[i] = v - wanted - p.inverseNormalMass * p.normalImpulse;
-    if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
+    blow[i] = c.restitution > 0.0 && room <= c.touching && v < -settings_.restitutionAbove;
+    least[i] = blow[i] ? -c.restitution * v : -room / settings_.h;
+    if (blow[i]) p.approach = 0.0;
   }
-  applyNormal(c, solvePoints(c, rest), a, b);
+  part(c, least, blow, a, b);
 }
 
-void ContactSolver::applyNormal(Constraint& c, const std::array<double, 2>& x, SolverBody& a, SolverBody& b) {
+// What was on its way at the start of the sub-step and has arrived: against the approach that it had then.
+void ContactSolver::bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const {
+  std::array<double, 2> least{0.0, 0.0};
+  std::array<bool, 2> blow{false, false};
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    blow[i] = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 &&
+              separationNow(c.normal, p, a, b) <= c.touching;
+    if (blow[i]) least[i] = -c.restitution * p.approach;
+  }
+  if (blow[0] || blow[1]) part(c, least, blow, a, b);
+}
+
+// At least these velocities apart. A blow, with the friction that it brings, is over at once: it is not borne on.
+void ContactSolver::part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow,
+                         SolverBody& a, SolverBody& b) {
+  std::array<double, 2> rest{0.0, 0.0};
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    rest[i] = normalVelocity(c.normal, p, a, b) - least[i] - p.inverseNormalMass * p.normalImpulse;
+    if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
+  }
+  const std::array<double, 2> x = solvePoints(c, rest);
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
     const double change = x[i] - p.normalImpulse;
     p.normalImpulse = x[i];
     p.normalSum += change;
     apply(c, p.armA, p.armB, change * c.normal.x(), change * c.normal.y(), a, b);
+  }
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    if (!blow[i]) continue;
+    rub(c, c.points[i], a, b);
+    c.points[i].normalImpulse = c.points[i].tangentImpulse = 0.0;
   }
 }
 
@@ -279,13 +302,14 @@ void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew) {
     forEachColour(crew, [&](Constraint& c) {
       SolverBody& a = bodies[c.a];
       SolverBody& b = bodies[c.b];
-      rub(c, a, b);  // first: what keeps apart has the last word
+      for (std::uint32_t i = 0; i < c.count; ++i)
+        rub(c, c.points[i], a, b);  // first: what keeps apart has the last word
       keepApart(c, a, b);
     });
   }
 }
 
-void ContactSolver::part(Constraint& c, SolverBody& a, SolverBody& b) const {
+void ContactSolver::pushOne(Constraint& c, SolverBody& a, SolverBody& b) const {
   std::array<double, 2> rest{0.0, 0.0};
   bool any = false;
   for (std::uint32_t i = 0; i < c.count; ++i) {
@@ -306,23 +330,7 @@ void ContactSolver::part(Constraint& c, SolverBody& a, SolverBody& b) const {
 }
 
 void ContactSolver::push(std::vector<SolverBody>& bodies, Crew& crew) {
-  forEachColour(crew, [&](Constraint& c) { part(c, bodies[c.a], bodies[c.b]); });
-}
-
-// What was on its way at the start of the sub-step and has arrived: against the approach that it had then.
-void ContactSolver::bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const {
-  std::array<double, 2> rest{0.0, 0.0};
-  bool any = false;
-  for (std::uint32_t i = 0; i < c.count; ++i) {
-    Point& p = c.points[i];
-    const bool bounces = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 && p.rebound == 0.0 &&
-                         separationNow(c.normal, p, a, b) <= c.touching;
-    if (bounces) p.rebound = -c.restitution * p.approach;
-    any = any || bounces;
-    rest[i] = normalVelocity(c.normal, p, a, b) - p.rebound - p.inverseNormalMass * p.normalImpulse;
-    if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
-  }
-  if (any) applyNormal(c, solvePoints(c, rest), a, b);
+  forEachColour(crew, [&](Constraint& c) { pushOne(c, bodies[c.a], bodies[c.b]); });
 }
 
 void ContactSolver::bounce(std::vector<SolverBody>& bodies, Crew& crew) {
@@ -339,8 +347,8 @@ ContactTotals ContactSolver::finish(const std::vector<SolverBody>& bodies, Conta
     Contact& contact = list.contacts()[c.contact];
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Point& p = c.points[i];
-      contact.points[i].normalImpulse = p.normalImpulse;
-      contact.points[i].tangentImpulse = p.tangentImpulse;
+      contact.points[i].normalForce = p.normalImpulse / settings_.h;
+      contact.points[i].tangentForce = p.tangentImpulse / settings_.h;
       const Vec2 impulse = p.normalSum * c.normal + p.tangentSum * leftNormal(c.normal);
       auto give = [&](std::uint32_t body, const Vec2& arm, const Vec2& to) {
         std::array<double, 3>& sum = onBody[body];

@@ -65,7 +65,6 @@ class ContactSolver {
     double normalImpulse, tangentImpulse;
     double normalSum, tangentSum;  // over the sub-steps
     double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
-    double rebound;                // at least this velocity apart, in this sub-step: it bounces [m/s]
   };
   struct Constraint {
     std::uint32_t a, b, contact, count;
@@ -87,11 +86,12 @@ class ContactSolver {
   template <typename Body>
   void forEachColour(Crew& crew, Body&& body);
   void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
-  void rub(Constraint& c, SolverBody& a, SolverBody& b) const;
+  static void rub(const Constraint& c, Point& p, SolverBody& a, SolverBody& b);
   void keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
-  static void applyNormal(Constraint& c, const std::array<double, 2>& impulses, SolverBody& a, SolverBody& b);
-  void part(Constraint& c, SolverBody& a, SolverBody& b) const;
   void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
+  static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, SolverBody& a,
+                   SolverBody& b);
+  void pushOne(Constraint& c, SolverBody& a, SolverBody& b) const;
 
   Settings settings_;
   int iterations_ = 1;                   // a sub-step

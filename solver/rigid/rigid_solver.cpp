@@ -126,6 +126,7 @@ void RigidSolver::loadBodies(const BodySet& bodies) {
     }
   }
   bodies_.back() = {};
+  onBody_.back() = {0.0, 0.0, 0.0};
 }
 
 Vec2 RigidSolver::accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t i) const {
@@ -205,6 +206,23 @@ void RigidSolver::integratePositions(const RigidStep& step, const BodySet& bodie
       b.px = b.py = b.pw = 0.0;
     }
   });
+}
+
+// What sleepers bear they bear on, as in their last sub-step awake.
+void RigidSolver::addSleeping(double dt) {
+  for (const Contact& c : list_.contacts()) {
+    if (c.count == 0 || awake_[c.bodyA] != 0 || awake_[c.bodyB] != 0) continue;
+    for (std::uint32_t k = 0; k < c.count; ++k) {
+      const ContactPoint& p = c.points[k];
+      const Vec2 impulse = dt * (p.normalForce * c.normal + p.tangentForce * leftNormal(c.normal));
+      auto give = [&](std::uint32_t body, const Vec2& to) {
+        std::array<double, 3>& sum = onBody_[body];
+        sum[0] += to.x(), sum[1] += to.y(), sum[2] += cross(Vec2(p.at - poses_.pose[body].position), to);
+      };
+      give(c.bodyA, -impulse);
+      give(c.bodyB, impulse);
+    }
+  }
 }
 
 // Hinged bodies turn about their hinge, and their velocity with them: of the angle alone this is the symplectic Euler
@@ -343,6 +361,7 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
     const ContactTotals totals = solver_.finish(bodies_, list_, onBody_);
     stats.impulse += totals.outside;
     stats.work += totals.work;
+    addSleeping(step.dt);
     storeMotions(step, bodies);
     stopAtImpacts(step, bodies, crew);
   });

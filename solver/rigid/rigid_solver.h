@@ -58,6 +58,7 @@ class RigidSolver {
   void integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats, Crew& crew);
   void solveHinges(const BodySet& bodies, double h, bool last, RigidStats& stats);
   void integratePositions(const RigidStep& step, const BodySet& bodies, double h, Crew& crew);
+  void addSleeping(double dt);
   void turnHinged(const BodySet& bodies, double h, RigidStats& stats);
   void storeMotions(const RigidStep& step, BodySet& bodies);
   void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
