@@ -82,13 +82,14 @@ double fallTime(double gap, double rate, double bend) {
 // A time within which the pair surely stays farther apart along n than `aim`, at most `span`.
 double safeTime(Reach& a, Reach& b, double between, double aim, double span) {
   const double distance = between - a.offset() - b.offset();
-  // Every vertex pair's bound is above the true one, so the extreme pair is followed down to where it stays the same.
+  // Every pair of vertices has a bound above the true one: the extreme pair at its time is followed down from that of
+  // the closest features to where it stays the same, which is where the true bound meets the target.
   double time = span;
   for (int k = 0; k < kSupportSteps; ++k) {
-    const bool movedA = a.follow(time), movedB = b.follow(time);
-    if (k > 0 && !movedA && !movedB) return time;
     const double gap = std::max(between - a.offset() - b.offset() - aim, 0.0);
     time = std::min(time, fallTime(gap, -a.rate() - b.rate(), a.bend + b.bend));
+    const bool movedA = a.follow(time), movedB = b.follow(time);
+    if (!movedA && !movedB) return time;
   }
   return std::min(span, std::max(distance - aim, 0.0) / (a.fastest + b.fastest));
 }
