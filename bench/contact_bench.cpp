@@ -64,8 +64,8 @@ Pairs makePairs(std::uint32_t vertices, Gap gap) {
     const double angle = random.uniform(-kPi, kPi);
     const Vec2 step = 0.001 * unit(random.uniform(-kPi, kPi));
     made.pairs.push_back(
-        {random.below(kShapes),
-         random.below(kShapes),
+        {random.below(shapes),
+         random.below(shapes),
          Transform::of(at, random.uniform(-kPi, kPi)),
          {Transform::of(at + apart, angle), Transform::of(at + apart + step, angle + random.uniform(-0.001, 0.001))}});
   }
