@@ -1,6 +1,8 @@
 // Searches all edge normals; most are ruled out by one product, before a supporting vertex is looked for.
 #include <froude/solver/contact/axis_search.h>
 
+#include <froude/solver/contact/feature_walk.h>
+
 namespace froude {
 
 namespace {
@@ -97,15 +99,13 @@ struct Search {
   }
 };
 
-std::uint32_t withinSize(std::uint32_t k, const ConvexShape& shape) { return k < shape.size() ? k : 0; }
-
 }  // namespace
 
 SeparatingAxis bestAxis(const PairFrame& pair, const PairCache& cache, AxisChoice choice) {
   Search search{pair, choice, kTie * pair.extent()};
-  const std::uint32_t a = withinSize(featureIndex(cache.a), pair.a);
-  const std::uint32_t b = withinSize(featureIndex(cache.b), pair.b);
-  if (isEdge(cache.b) && !isEdge(cache.a)) {
+  const PairCache start = pair.holds(cache) ? cache : firstGuess(pair);
+  const std::uint32_t a = featureIndex(start.a), b = featureIndex(start.b);
+  if (isEdge(start.b) && !isEdge(start.a)) {
     search.run<false>(b, a);
   } else {
     search.run<true>(a, b);
