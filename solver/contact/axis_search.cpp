@@ -1,6 +1,8 @@
 // Searches all edge normals; most are ruled out by one product, before a supporting vertex is looked for.
 #include <froude/solver/contact/axis_search.h>
 
+#include <froude/solver/contact/feature_walk.h>
+
 namespace froude {
 
 namespace {
@@ -42,25 +44,42 @@ struct Search {
   }
 
   // Along no axis is the other shape farther away than any of its points: its last support and the two beside it lie
-  // deep behind most edges. A few products an edge; the support is looked for where that bound beats the best.
+  // deep behind most edges. A few products for two edges; the support is looked for where that bound beats the best.
   template <bool kOfA>
   void all(std::uint32_t hint) {
     const ConvexShape& self = pair.self<kOfA>();
-    const ConvexShape& other = pair.other<kOfA>();
-    const auto place = [&](std::uint32_t k) { return kOfA ? pair.inA(other.vertex(k)) : pair.inB(other.vertex(k)); };
-    Flat point = place(hint), after = place(other.next(hint)), before = place(other.previous(hint));
-    for (std::uint32_t k = 0; k < self.size(); ++k) {
-      const Flat n = self.normal(k);
-      const double bound = std::min(dot(n, point), std::min(dot(n, after), dot(n, before)));
-      if (bound - dot(n, self.vertex(k)) <= separation) continue;
-      const std::uint32_t last = hint;
-      consider<kOfA>(k, hint);
-      if (done()) return;
-      if (hint == last) continue;
-      point = place(hint);
-      after = place(other.next(hint));
-      before = place(other.previous(hint));
+    Witness witness = witnessOf<kOfA>(hint);
+    const auto lines = self.linePairs();
+    for (std::uint32_t k = 0; k < lines.size(); ++k) {
+      const Eigen::Array2d bound = witness.above(lines[k]);
+      if (std::max(bound[0], bound[1]) <= separation) continue;
+      for (std::uint32_t e = 2 * k; e < std::min(2 * k + 2, self.size()); ++e) {
+        if (bound[e & 1] <= separation) continue;
+        consider<kOfA>(e, hint);
+        if (done()) return;
+      }
+      witness = witnessOf<kOfA>(hint);
     }
+  }
+
+  struct Witness {
+    Flat point, after, before;  // from the centroid of the shape whose edges are tried
+
+    Eigen::Array2d above(const ConvexShape::LinePair& line) const {
+      const Eigen::Array2d first = line.normalX * point.x + line.normalY * point.y;
+      const Eigen::Array2d second = line.normalX * after.x + line.normalY * after.y;
+      const Eigen::Array2d third = line.normalX * before.x + line.normalY * before.y;
+      return first.min(second).min(third) - line.offset;
+    }
+  };
+
+  template <bool kOfA>
+  Witness witnessOf(std::uint32_t k) const {
+    const ConvexShape& other = pair.other<kOfA>();
+    const auto place = [&](std::uint32_t v) {
+      return (kOfA ? pair.inA(other.vertex(v)) : pair.inB(other.vertex(v))) - Flat(pair.self<kOfA>().centroid());
+    };
+    return {place(k), place(other.next(k)), place(other.previous(k))};
   }
 
   // First the cached edge, then the edge of the other shape that faces it: most often one of them is the best, and what
@@ -80,15 +99,13 @@ struct Search {
   }
 };
 
-std::uint32_t withinSize(std::uint32_t k, const ConvexShape& shape) { return k < shape.size() ? k : 0; }
-
 }  // namespace
 
 SeparatingAxis bestAxis(const PairFrame& pair, const PairCache& cache, AxisChoice choice) {
   Search search{pair, choice, kTie * pair.extent()};
-  const std::uint32_t a = withinSize(featureIndex(cache.a), pair.a);
-  const std::uint32_t b = withinSize(featureIndex(cache.b), pair.b);
-  if (isEdge(cache.b) && !isEdge(cache.a)) {
+  const PairCache start = pair.holds(cache) ? cache : firstGuess(pair);
+  const std::uint32_t a = featureIndex(start.a), b = featureIndex(start.b);
+  if (isEdge(start.b) && !isEdge(start.a)) {
     search.run<false>(b, a);
   } else {
     search.run<true>(a, b);

@@ -52,9 +52,16 @@ struct Builder {
     Clip high = vertexOver<kOfA>(edge, facing);
     if (low.along > high.along) std::swap(low, high);
     if (low.along > length || high.along < 0.0) return;
-    const double slope = (high.height - low.height) / (high.along - low.along);  // used only where a clip has length
-    if (low.along < 0.0) low = {0.0, low.height - low.along * slope, pointId(kOfA, edge, facing)};
-    if (high.along > length) high = {length, high.height + (length - high.along) * slope, pointId(kOfA, last, facing)};
+    // Whether an end is cut off is a coin's toss from pair to pair: chosen, not branched upon.
+    const double width = high.along - low.along;
+    const double slope = (high.height - low.height) / (width > 0.0 ? width : 1.0);
+    const bool cutLow = low.along<0.0, cutHigh = high.along> length;
+    low.height -= std::min(low.along, 0.0) * slope;
+    low.along = std::max(low.along, 0.0);
+    low.id = cutLow ? pointId(kOfA, edge, facing) : low.id;
+    high.height -= std::max(high.along - length, 0.0) * slope;
+    high.along = std::min(high.along, length);
+    high.id = cutHigh ? pointId(kOfA, last, facing) : high.id;
     if (high.along - low.along <= kOnePoint * pair.extent())
       return add<kOfA>(edge, low.height < high.height ? low : high);
     add<kOfA>(edge, low);

@@ -93,13 +93,20 @@ void ConvexShape::finish() {
   }
   if (!(area > 0.0)) refuse("no area");
   centroid_ = vertices_[0] + moment / (3.0 * area);
-  innerRadius_ = kInfinity;
+  innerRadius_ = hold_ = kInfinity;
   for (std::uint32_t k = 0; k < n; ++k) {
     outerRadius_ = std::max(outerRadius_, (vertices_[k] - centroid_).norm());
     reach_ = std::max(reach_, vertices_[k].norm());
+    hold_ = std::min(hold_, normals_[k].dot(vertices_[k]));
     innerRadius_ = std::min(innerRadius_, normals_[k].dot(vertices_[k] - centroid_));
   }
   innerRadius_ = std::max(innerRadius_, 0.0);
+  for (std::uint32_t k = 0; k < n; k += 2) {
+    const std::uint32_t l = std::min(k + 1, n - 1);
+    const Vec2 &p = normals_[k], &q = normals_[l];
+    lines_.push_back(
+        {{p.x(), q.x()}, {p.y(), q.y()}, {p.dot(vertices_[k] - centroid_), q.dot(vertices_[l] - centroid_)}});
+  }
 }
 
 Box ConvexShape::box(const Transform& pose) const {

@@ -40,7 +40,16 @@ class FROUDE_API ConvexShape {
   double innerRadius() const { return innerRadius_; }
   /// Largest distance of a vertex from the origin of its frame [m].
   double reach() const { return reach_; }
+  /// Radius of the largest disc about the origin that the shape holds [m]; negative where the origin is outside.
+  double hold() const { return hold_; }
   Box box(const Transform& pose) const;
+  /// Two edges' lines side by side, for loops over all edges two at a time: n · (p − centroid) = offset on the line. An
+  /// odd number is made up with the last one again. Offsets are from the centroid, which is where rounding is least.
+  struct LinePair {
+    Eigen::Array2d normalX, normalY, offset;
+  };
+  std::span<const LinePair> linePairs() const { return lines_; }
+
   /// A vertex that is farthest in `direction` (any length). Cost: O(size) up to 32 vertices, O(log size) beyond.
   std::uint32_t farthest(const Vec2& direction) const;
 
@@ -69,7 +78,8 @@ class FROUDE_API ConvexShape {
   std::uint32_t size_ = 0;
   bool whole_ = true;
   Vec2 centroid_{0.0, 0.0};
-  double outerRadius_ = 0.0, innerRadius_ = 0.0, reach_ = 0.0;
+  double outerRadius_ = 0.0, innerRadius_ = 0.0, reach_ = 0.0, hold_ = 0.0;
+  std::vector<LinePair> lines_;
   std::vector<Vec2> vertices_, normals_;
   std::vector<std::uint8_t> outline_;  // by edge
   std::vector<Cone> cone_;             // by vertex; empty for a whole polygon

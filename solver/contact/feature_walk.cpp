@@ -160,19 +160,16 @@ struct Walker {
   }
 };
 
-// The vertices that lie farthest towards the other shape's centroid: near the answer for round shapes, and never
-// behind.
+}  // namespace
+
 PairCache firstGuess(const PairFrame& pair) {
   const Flat towards = pair.inA(pair.b.centroid()) - Flat(pair.a.centroid());
   return {vertexFeature(pair.a.farthest(towards.vec())),
           vertexFeature(pair.b.farthest((-pair.turnedBack(towards)).vec()))};
 }
 
-}  // namespace
-
 WalkEnd walkFeatures(const PairFrame& pair, PairCache& features, int limit, ClosestFeatures& found) {
-  if (featureIndex(features.a) >= pair.a.size() || featureIndex(features.b) >= pair.b.size())
-    features = firstGuess(pair);
+  if (!pair.holds(features)) features = firstGuess(pair);
   PairCache at = features;
   Walker walker{pair, at, found};
   Step step = walker.step(true);

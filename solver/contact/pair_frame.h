@@ -90,6 +90,10 @@ struct PairFrame {
     if constexpr (kOfA) return p.vec();
     return inA(p).vec();
   }
+  /// Are these features of this pair at all?
+  bool holds(const PairCache& cache) const {
+    return featureIndex(cache.a) < a.size() && featureIndex(cache.b) < b.size();
+  }
   bool isFinite() const {
     const double sum = pose.position.x() + pose.position.y() + pose.rotation.c + pose.rotation.s;
     return std::abs(sum) < kInfinity;

@@ -16,8 +16,10 @@ struct SeparatingAxis {
 };
 
 /// Edges that are cuts are no axes, nor are directions in which the supporting vertex can not be touched
-/// (ConvexShape::allows); a pair without any axis left is Apart with separation +∞. For whole polygons the answer is
-/// exact. Cost: O(n + m); O(1) where the cached edge still separates.
+/// (ConvexShape::allows), but for the one answer that the pair is apart; a pair without any axis left is Apart with
+/// separation +∞. For whole polygons the depth is exact; of two equal ones the cached edge's stays. Where the pair is
+/// apart, the separation is that of the first axis found, not the largest. Cost: O(n + m); O(1) where the cached edge
+/// still separates.
 FROUDE_API SeparatingAxis sat(const ConvexShape& a, const ConvexShape& b, const Transform& bInA, PairCache& cache);
 
 }  // namespace froude

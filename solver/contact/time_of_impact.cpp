@@ -14,18 +14,15 @@ constexpr double kSteps = 100.0, kStepsPerRadian = 20.0, kMostSteps = 10000.0;
 constexpr double kSlack = 0.1;  // of the target
 constexpr int kSupportSteps = 16;
 
-// Sine and cosine by their series to the last bit up to a quarter turn or so: most steps turn by far less, and the
-// general ones reduce their argument first.
+// Sine and cosine by their series, to the last bit for turns up to 0.8 rad: most steps turn by less, and the general
+// functions reduce their argument first.
 Rotation rotationOf(double angle) {
   if (!(std::abs(angle) <= 0.8)) return Rotation::of(angle);
   const double q = angle * angle;
-  double s = -1.0 / 1307674368000.0, c = -1.0 / 87178291200.0;
-  for (const double term :
-       {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0, -1.0 / 5040.0, 1.0 / 120.0, -1.0 / 6.0, 1.0})
-    s = s * q + term;
-  for (const double term : {1.0 / 479001600.0, -1.0 / 3628800.0, 1.0 / 40320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5, 1.0})
-    c = c * q + term;
-  return {c, angle * s};
+  const double s = ((1.0 / 6227020800.0 - q / 1307674368000.0) * q - 1.0 / 39916800.0) * q + 1.0 / 362880.0;
+  const double c = ((1.0 / 479001600.0 - q / 87178291200.0) * q - 1.0 / 3628800.0) * q + 1.0 / 40320.0;
+  return {(((c * q - 1.0 / 720.0) * q + 1.0 / 24.0) * q - 0.5) * q + 1.0,
+          angle * (((s * q - 1.0 / 5040.0) * q + 1.0 / 120.0) * q - 1.0 / 6.0) * q + angle};
 }
 
 Transform poseAt(const RigidMotion& motion, double time) {
@@ -34,30 +31,38 @@ Transform poseAt(const RigidMotion& motion, double time) {
   return {motion.start.position + time * motion.velocity, {r.c * turn.c - r.s * turn.s, r.s * turn.c + r.c * turn.s}};
 }
 
-// How far a shape reaches along a direction, as a linear function of time: the extreme over its vertices.
+// How far a shape reaches along a direction, bounded by a function of time: the extreme over its vertices of a linear
+// one, and a square for what their paths bend.
 struct Reach {
   const ConvexShape& shape;
   Flat normal, turned;  // the direction, and what the spin adds to it in a second, in the shape's frame
   double speed;         // of the origin along it [m/s]
-  double spin;          // without sign [rad/s]
-  double radius;        // no vertex is farther from the origin [m]
+  double fastest;       // of any vertex along it, without sign [m/s]
+  double bend;          // [m/s²]
   std::uint32_t vertex;
 
-  Reach(const ConvexShape& s, const RigidMotion& m, const Transform& p, const Flat& n, std::uint32_t hint)
+  Reach(const ConvexShape& s, const RigidMotion& m, const Transform& p, const Flat& n, double span, std::uint32_t hint)
       : shape(s),
         normal(p.rotation.c * n.x + p.rotation.s * n.y, p.rotation.c * n.y - p.rotation.s * n.x),
         turned(m.spin * normal.y, -m.spin * normal.x),
         speed(dot(n, m.velocity)),
-        spin(std::abs(m.spin)),
-        radius(s.reach()),
+        fastest(std::abs(speed) + std::abs(m.spin) * s.reach()),
+        bend(bendOf(s, std::abs(m.spin), span)),
         vertex(hint) {}
+
+  // A vertex at (u, w), along and across the direction, is at u cos θ + w sin θ after a turn by θ. That is at most
+  // u + wθ + rθ²/2 for all that are not farther from the origin than r. Where u ≥ 0 it is at most u + wθ + |w|θ³/6: its
+  // path bends back. While the turn is so small that no vertex with u < 0 can come to reach farther than the disc that
+  // the shape holds about its origin, only those with u ≥ 0 count.
+  static double bendOf(const ConvexShape& shape, double spin, double span) {
+    const double bend = spin * spin * shape.reach();
+    const double turn = spin * span;
+    return shape.reach() * turn <= shape.hold() ? bend * std::min(1.0, turn / 3.0) : bend;
+  }
 
   /// Position and velocity of the vertex, about the origin.
   double offset() const { return dot(normal, shape.vertex(vertex)); }
   double rate() const { return speed + dot(turned, shape.vertex(vertex)); }
-  /// Largest acceleration and speed of a vertex [m/s², m/s].
-  double bend() const { return spin * spin * radius; }
-  double fastest() const { return std::abs(speed) + spin * radius; }
   /// True if another vertex reaches farther after `time`.
   bool follow(double time) {
     const std::uint32_t old = vertex;
@@ -77,15 +82,16 @@ double fallTime(double gap, double rate, double bend) {
 // A time within which the pair surely stays farther apart along n than `aim`, at most `span`.
 double safeTime(Reach& a, Reach& b, double between, double aim, double span) {
   const double distance = between - a.offset() - b.offset();
-  // Every vertex pair's bound is above the true one, so the extreme pair is followed down to where it stays the same.
+  // Every pair of vertices has a bound above the true one: the extreme pair at its time is followed down from that of
+  // the closest features to where it stays the same, which is where the true bound meets the target.
   double time = span;
   for (int k = 0; k < kSupportSteps; ++k) {
-    const bool movedA = a.follow(time), movedB = b.follow(time);
-    if (k > 0 && !movedA && !movedB) return time;
     const double gap = std::max(between - a.offset() - b.offset() - aim, 0.0);
-    time = std::min(time, fallTime(gap, -a.rate() - b.rate(), a.bend() + b.bend()));
+    time = std::min(time, fallTime(gap, -a.rate() - b.rate(), a.bend + b.bend));
+    const bool movedA = a.follow(time), movedB = b.follow(time);
+    if (!movedA && !movedB) return time;
   }
-  return std::min(span, std::max(distance - aim, 0.0) / (a.fastest() + b.fastest()));
+  return std::min(span, std::max(distance - aim, 0.0) / (a.fastest + b.fastest));
 }
 
 // Does the pair come nearer within `span` than it is by more than is worth telling? By the features' own velocities.
@@ -124,8 +130,8 @@ TimeOfImpact timeOfImpact(const ConvexShape& a, const RigidMotion& motionA, cons
     impact.time = time;
     const double span = duration - time;
     const Vec2 normal = poseA.rotation.apply(closest.normal);
-    Reach reachA(a, motionA, poseA, normal, featureIndex(closest.a));
-    Reach reachB(b, motionB, poseB, -Flat(normal), featureIndex(closest.b));
+    Reach reachA(a, motionA, poseA, normal, span, featureIndex(closest.a));
+    Reach reachB(b, motionB, poseB, -Flat(normal), span, featureIndex(closest.b));
     double aim = target;
     if (closest.distance <= (1.0 + kSlack) * target) {
       if (isClosing(a, b, closest, reachA, reachB, span, kSlack * target))
