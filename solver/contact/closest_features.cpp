@@ -59,7 +59,7 @@ void overlap(const SeparatingAxis& axis, ClosestFeatures& closest) {
 }  // namespace
 
 SeparatingAxis closestBehind(const PairFrame& pair, PairCache& cache, ClosestFeatures& closest) {
-  const SeparatingAxis axis = bestAxis(pair, cache, AxisChoice::Any);
+  SeparatingAxis axis = bestAxis(pair, cache, AxisChoice::Any);
   closest.status = PairStatus::Failed;
   if (!std::isfinite(axis.separation)) return axis;
   cache = featuresOf(axis);
