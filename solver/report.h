@@ -20,6 +20,7 @@ enum class StepLimit : int {
   Viscosity,     // dx²/ν
   Spin,          // ω·dt ≤ 0.5 rad of a body
   Wall,          // a moving polygon's travel against the support radius
+  Body,          // a free body's travel against its own thickness
   Bullet,        // a bullet's sub-step
   Requested,     // the caller asked for less
   Undone,        // halved after a bad step

@@ -85,6 +85,10 @@ void BodySet::append(BodyDef def, std::uint32_t slot) {
   for (const Vec2& v : shapes_.back()->vertices()) radius = std::max(radius, v.norm());
   motions_.push_back(motion);
   radius_.push_back(radius);
+  double outline = 0.0;
+  for (std::uint32_t e = 0; e < def.shape->edgeCount(); ++e)
+    outline += (def.shape->edgeEnd(e) - def.shape->edgeStart(e)).norm();
+  thickness_.push_back(2.0 * def.shape->area() / outline);
   frameOrigins_.push_back(origin);
   hingeAnchors_.push_back(def.hinge ? Vec2(pose.toLocal(def.hinge->at) - origin) : Vec2(0.0, 0.0));
   MassData mass;
@@ -149,6 +153,7 @@ void BodySet::remove(std::size_t i) {
   definitions_.erase(definitions_.begin() + at);
   motions_.erase(motions_.begin() + at);
   radius_.erase(radius_.begin() + at);
+  thickness_.erase(thickness_.begin() + at);
   shapes_.erase(shapes_.begin() + at);
   frameOrigins_.erase(frameOrigins_.begin() + at);
   hingeAnchors_.erase(hingeAnchors_.begin() + at);
@@ -242,6 +247,7 @@ void BodySet::restore(std::span<const std::uint32_t> slots, const std::vector<st
   definitions_ = std::move(loaded.definitions_);
   motions_ = std::move(loaded.motions_);
   radius_ = std::move(loaded.radius_);
+  thickness_ = std::move(loaded.thickness_);
   shapes_ = std::move(loaded.shapes_);
   frameOrigins_ = std::move(loaded.frameOrigins_);
   hingeAnchors_ = std::move(loaded.hingeAnchors_);

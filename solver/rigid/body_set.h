@@ -63,6 +63,8 @@ class BodySet {
   }
   /// The hinge's place in the frame of the body. Precondition: it has one.
   const Vec2& hingeAnchor(std::size_t i) const { return hingeAnchors_[i]; }
+  /// Radius of a disc of the same ratio of area to outline [m]: small for what is thin.
+  double thickness(std::size_t i) const { return thickness_[i]; }
   /// Largest distance of a vertex from the frame's origin [m].
   double radius(std::size_t i) const { return radius_[i]; }
 
@@ -116,7 +118,7 @@ class BodySet {
   std::vector<Vec2> frameOrigins_, hingeAnchors_;
   std::vector<MassData> masses_;
   std::vector<FreeState> freeStates_;
-  std::vector<double> radius_;
+  std::vector<double> radius_, thickness_;
   std::vector<std::uint32_t> slots_;        // by index
   std::vector<std::uint32_t> generations_;  // by slot: odd while it is taken
   std::vector<std::uint32_t> freeSlots_;    // the longest free one first

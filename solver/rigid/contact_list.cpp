@@ -7,8 +7,6 @@ namespace {
 
 constexpr double kSkin = 0.1;        // of a piece's outer radius: how far it may move before pairs are looked for anew
 constexpr double kStepsAhead = 3.0;  // and this many steps of its present travel
-constexpr double kLargestMargin =
-    0.5;  // of the thinner body that moves: what comes from farther is a matter of continuous motion
 constexpr std::size_t kBlock = 64;
 constexpr std::uint64_t kWallKey = std::uint64_t{1} << 62;
 constexpr int kPieceBits = 24, kSlotBits = 30;
@@ -127,21 +125,9 @@ void ContactList::findReach(const BodyPoses& poses, Crew& crew) {
   });
 }
 
-void ContactList::findStir(const BodyPoses& poses) {
-  stir_.assign(poses.pose.size(), 0.0);
-  for (const Contact& c : contacts_) {
-    const double apart = (poses.drift[c.bodyB] - poses.drift[c.bodyA]).norm();
-    for (const std::uint32_t i : {c.bodyA, c.bodyB}) {
-      if (poses.thickness[i] < kInfinity) {
-        stir_[i] = std::max(stir_[i], std::min(apart, kLargestMargin * poses.thickness[i]));
-      }
-    }
-  }
-}
-
 bool ContactList::leftItsBox() const {
   for (std::size_t p = 0; p < proxies_.size(); ++p) {
-    if (!contains(fat_[p], reach_[p].grown(stir_[proxies_[p].body]))) return true;
+    if (!contains(fat_[p], reach_[p])) return true;
   }
   return false;
 }
@@ -223,14 +209,11 @@ void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
   if (poses.still[contact.bodyA] != 0 && poses.still[contact.bodyB] != 0) return;
   const Contact last = contact;
   contact.count = 0;
-  const double stir = stir_[contact.bodyA] + stir_[contact.bodyB];
-  if (!reach_[contact.a].grown(stir).overlaps(reach_[contact.b])) return;
+  if (!reach_[contact.a].overlaps(reach_[contact.b])) return;
   const ConvexShape& a = shape(contact.a);
   const ConvexShape& b = shape(contact.b);
   const Transform& frame = poses.pose[contact.bodyA];
-  const double margin =
-      std::min(poses.closing(contact.bodyA, contact.bodyB) + stir,
-               kLargestMargin * std::min(poses.thickness[contact.bodyA], poses.thickness[contact.bodyB]));
+  const double margin = poses.margin(contact.bodyA, contact.bodyB);
   const ContactManifold m = contactManifold(a, b, poseIn(frame, poses.pose[contact.bodyB]), margin, contact.cache);
   contact.count = m.count;
   contact.normal = frame.rotation.apply(m.normal);
@@ -247,7 +230,6 @@ void ContactList::collide(Contact& contact, const BodyPoses& poses) const {
 
 void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& crew) {
   findReach(poses, crew);
-  findStir(poses);
   if (stale_ || leftItsBox()) {
     for (std::size_t p = 0; p < proxies_.size(); ++p) {
       const Proxy& proxy = proxies_[p];
@@ -255,10 +237,9 @@ void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& cr
       fat_[p] = reach_[p];
       if (wall) continue;
       extend(fat_[p], kStepsAhead * poses.drift[proxy.body]);
-      fat_[p] = fat_[p].grown(kSkin * proxy.shape->outerRadius() + poses.spread[proxy.body] + stir_[proxy.body]);
+      fat_[p] = fat_[p].grown(kSkin * proxy.shape->outerRadius() + poses.spread[proxy.body]);
     }
     pairAnew(bodies);
-    findStir(poses);
     stale_ = false;
   }
   crew.stage(contacts_.size(), kBlock, [&](std::size_t begin, std::size_t end) {

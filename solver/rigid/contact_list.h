@@ -44,10 +44,9 @@ struct BodyPoses {
   std::vector<double> thickness;    // of bodies that contacts move, else infinite [m]
   std::vector<std::uint8_t> still;  // asleep, or never moved by contacts
 
-  /// How much nearer to each other two bodies may come in the step [m].
-  double closing(std::uint32_t a, std::uint32_t b) const {
-    return (drift[b] - drift[a]).norm() + spread[a] + spread[b];
-  }
+  /// How far apart two bodies may be that get contact points [m]. What is farther may still meet in the step, when it
+  /// is fast or is thrown: that is a matter of continuous motion.
+  double margin(std::uint32_t a, std::uint32_t b) const { return 0.3 * std::min(thickness[a], thickness[b]); }
 };
 
 /// Contacts in the order of their keys, whatever history led to them. Sleepers keep theirs as they are.
@@ -85,7 +84,6 @@ class ContactList {
     std::vector<ConvexShape> pieces;
   };
   void findReach(const BodyPoses& poses, Crew& crew);
-  void findStir(const BodyPoses& poses);
   bool leftItsBox() const;
   void pairAnew(const BodySet& bodies);
   void sweepAlongX(const BodySet& bodies);
@@ -99,9 +97,6 @@ class ContactList {
   std::vector<std::uint32_t> firstProxy_;  // by body, and the end
   std::vector<double> thickness_;
   std::vector<Box> reach_, fat_;  // by proxy
-  // How much a body may be thrown from its way in the step: the largest difference to the ways of those near it, at
-  // most the largest margin [m].
-  std::vector<double> stir_;
   std::vector<Contact> contacts_, before_;
   std::vector<std::uint32_t> order_;         // proxies along x
   std::vector<std::uint32_t> byKey_, rank_;  // proxies by key, and each one's place there

@@ -8,9 +8,14 @@ namespace {
 constexpr std::size_t kBlock = 32;      // contacts a task
 constexpr std::uint32_t kColours = 32;  // between free bodies; as many again with what does not give way
 constexpr double kPartShare = 0.4;      // of an overlap that a sub-step takes away
-constexpr int kColdIterations = 50;     // where no point bears anything yet: a scene's start
-constexpr double kTouching = 2e-5;      // thicknesses apart that count as touching
-constexpr double kPushLimit = 20.0;     // thicknesses of the thinner body a second
+// A blow runs through a heap body by body: iterations go on while anything would still overlap by so much in the
+// sub-step.
+constexpr double kBounce = 0.2;      // of √(g · thickness): what meets slower does not bounce
+constexpr double kOverrun = 0.02;    // of the thinner body
+constexpr int kIterations = 8;      // at most
+constexpr int kColdIterations = 50;  // where no point bears anything yet: a scene's start
+constexpr double kTouching = 2e-5;   // thicknesses apart that count as touching
+constexpr double kPushLimit = 20.0;  // thicknesses of the thinner body a second
 
 double mixedFriction(double a, double b) { return std::sqrt(a * b); }
 
@@ -37,8 +42,11 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
   c.friction = mixedFriction(da.friction, db.friction);
   c.restitution = std::max(da.restitution, db.restitution);
   c.belt = (wallA ? 0.0 : da.surfaceVelocity) + (wallB ? 0.0 : db.surfaceVelocity);
-  c.touching = kTouching * std::min(list.thickness(c.a), list.thickness(c.b));
-  c.pushLimit = kPushLimit * std::min(list.thickness(c.a), list.thickness(c.b));
+  c.thickness = std::min(list.thickness(c.a), list.thickness(c.b));
+  c.touching = kTouching * c.thickness;
+  c.bouncesAbove =
+      std::max(2.0 * settings_.gravity * settings_.step, kBounce * std::sqrt(settings_.gravity * c.thickness));
+  c.pushLimit = kPushLimit * c.thickness;
   const Vec2 originA = poses.pose[c.a].position, originB = poses.pose[c.b].position;
   const Vec2 tangent = leftNormal(c.normal);
   const double inverseMass = c.inverseMassA + c.inverseMassB;
@@ -118,7 +126,7 @@ void ContactSolver::prepare(const ContactList& list, const BodySet& bodies, cons
     anyBounces_ = anyBounces_ || c.restitution > 0.0;
     for (std::uint32_t i = 0; i < c.count; ++i) cold = cold && c.points[i].normalImpulse == 0.0;
   }
-  iterations_ = cold ? kColdIterations : 1;
+  iterations_ = cold ? kColdIterations : kIterations;
 }
 
 template <typename Body>
@@ -210,7 +218,7 @@ void ContactSolver::noteApproach(const std::vector<SolverBody>& bodies, Crew& cr
       for (std::uint32_t i = 0; i < c.count; ++i) {
         Point& p = c.points[i];
         p.approach = normalVelocity(c.normal, p, bodies[c.a], bodies[c.b]);
-        fast = fast || (c.restitution > 0.0 && p.approach < -settings_.restitutionAbove);
+        fast = fast || (c.restitution > 0.0 && p.approach < -c.bouncesAbove);
       }
     }
     if (fast) anyFast_.store(true, std::memory_order_relaxed);
@@ -246,18 +254,21 @@ void ContactSolver::rub(const Constraint& c, Point& p, SolverBody& a, SolverBody
 }
 
 // Newton's law of restitution where they touch already: blow by blow, as each is handed on.
-void ContactSolver::keepApart(Constraint& c, SolverBody& a, SolverBody& b) const {
+double ContactSolver::keepApart(Constraint& c, SolverBody& a, SolverBody& b) const {
+  double overrun = 0.0;
   std::array<double, 2> least;
   std::array<bool, 2> blow{false, false};
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
     const double room = std::max(0.0, separationNow(c.normal, p, a, b));
     const double v = normalVelocity(c.normal, p, a, b);
-    blow[i] = c.restitution > 0.0 && room <= c.touching && v < -settings_.restitutionAbove;
+    blow[i] = c.restitution > 0.0 && room <= c.touching && v < -c.bouncesAbove;
     least[i] = blow[i] ? -c.restitution * v : -room / settings_.h;
     if (blow[i]) p.approach = 0.0;
+    overrun = std::max(overrun, -v * settings_.h - room);
   }
   part(c, least, blow, a, b);
+  return overrun / c.thickness;
 }
 
 // What was on its way at the start of the sub-step and has arrived: against the approach that it had then.
@@ -266,8 +277,7 @@ void ContactSolver::bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const
   std::array<bool, 2> blow{false, false};
   for (std::uint32_t i = 0; i < c.count; ++i) {
     const Point& p = c.points[i];
-    blow[i] = p.approach < -settings_.restitutionAbove && p.normalImpulse > 0.0 &&
-              separationNow(c.normal, p, a, b) <= c.touching;
+    blow[i] = p.approach < -c.bouncesAbove && p.normalImpulse > 0.0 && separationNow(c.normal, p, a, b) <= c.touching;
     if (blow[i]) least[i] = -c.restitution * p.approach;
   }
   if (blow[0] || blow[1]) part(c, least, blow, a, b);
@@ -283,8 +293,10 @@ void ContactSolver::part(Constraint& c, const std::array<double, 2>& least, cons
     if (c.count == 2) rest[i] -= c.coupling * c.points[1 - i].normalImpulse;
   }
   const std::array<double, 2> x = solvePoints(c, rest);
+  std::array<double, 2> borne{0.0, 0.0};
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
+    borne[i] = p.normalImpulse;
     const double change = x[i] - p.normalImpulse;
     p.normalImpulse = x[i];
     p.normalSum += change;
@@ -292,20 +304,25 @@ void ContactSolver::part(Constraint& c, const std::array<double, 2>& least, cons
   }
   for (std::uint32_t i = 0; i < c.count; ++i) {
     if (!blow[i]) continue;
-    rub(c, c.points[i], a, b);
-    c.points[i].normalImpulse = c.points[i].tangentImpulse = 0.0;
+    Point& p = c.points[i];
+    const double tangent = p.tangentImpulse;
+    rub(c, p, a, b);
+    p.normalImpulse = borne[i];
+    p.tangentImpulse = tangent;
   }
 }
 
 void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew) {
   for (int k = 0; k < iterations_; ++k) {
+    overruns_.store(false, std::memory_order_relaxed);
     forEachColour(crew, [&](Constraint& c) {
       SolverBody& a = bodies[c.a];
       SolverBody& b = bodies[c.b];
-      for (std::uint32_t i = 0; i < c.count; ++i)
-        rub(c, c.points[i], a, b);  // first: what keeps apart has the last word
-      keepApart(c, a, b);
+      // Friction first: what keeps apart has the last word.
+      for (std::uint32_t i = 0; i < c.count; ++i) rub(c, c.points[i], a, b);
+      if (keepApart(c, a, b) > kOverrun) overruns_.store(true, std::memory_order_relaxed);
     });
+    if (!overruns_.load(std::memory_order_relaxed)) return;
   }
 }
 

@@ -32,9 +32,9 @@ class ContactSolver {
  public:
   /// What is the same for all contacts of a step.
   struct Settings {
-    double h = 0.0;  // sub-step [s]
-    int substeps = 1;
-    double restitutionAbove = 0.0;  // approach that bounces [m/s]
+    double h = 0.0;        // sub-step [s]
+    double step = 0.0;     // [s]
+    double gravity = 0.0;  // largest |g| [m/s²]
   };
 
   /// Takes the contacts that have points and of which one body is awake, in the order of the list; colours them.
@@ -71,6 +71,8 @@ class ContactSolver {
     double inverseMassA, inverseInertiaA, inverseMassB, inverseInertiaB;
     Vec2 normal;
     double friction, restitution, belt;  // belt: of the surfaces along the tangent [m/s]
+    double thickness;                    // of the thinner body [m]
+    double bouncesAbove;                 // [m/s]
     double touching;                     // [m]
     double pushLimit;                    // [m/s]
     double coupling;                     // of the two points' normal impulses [1/kg]
@@ -87,7 +89,7 @@ class ContactSolver {
   void forEachColour(Crew& crew, Body&& body);
   void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
   static void rub(const Constraint& c, Point& p, SolverBody& a, SolverBody& b);
-  void keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
+  double keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
   void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
   static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, SolverBody& a,
                    SolverBody& b);
@@ -96,6 +98,7 @@ class ContactSolver {
   Settings settings_;
   int iterations_ = 1;                   // a sub-step
   bool anyBounces_ = false;              // any that could
+  std::atomic<bool> overruns_{false};    // any that would still overlap
   std::atomic<bool> anyFast_{false};     // any that may in this sub-step
   std::vector<Constraint> constraints_;  // by colour
   std::vector<Colour> colours_;

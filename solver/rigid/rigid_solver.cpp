@@ -14,7 +14,8 @@ constexpr std::size_t kCrewFrom = 64;     // contacts that are worth a second th
 constexpr double kStillSpeed = 0.01;
 constexpr double kStillTime = 0.5;  // [s]
 constexpr double kFast = 0.5;       // thicknesses that a pair comes nearer in a step, from which on it is followed
-constexpr double kSlop = 1e-3;      // of the thickness: contacts are found this much before they touch
+constexpr int kImpactRounds = 3;
+constexpr double kSlop = 1e-3;  // of the thickness: contacts are found this much before they touch
 
 int substepsFor(double dt) { return std::max(1, static_cast<int>(std::ceil(dt / kSubstep - 1e-6))); }
 
@@ -58,7 +59,7 @@ void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies) {
     poses_.spread[i] = kSlop * list_.thickness(i);
     if (!moves) continue;
     poses_.spread[i] += step.dt * std::abs(w) * bodies.radius(i);
-    if (free) poses_.spread[i] += 2.0 * step.gravityScale * step.dt * step.dt;
+    if (free) poses_.spread[i] += 2.0 * step.gravityScale * step.dt * step.dt + 0.5 * poses_.margin(i, i);
   }
 }
 
@@ -261,19 +262,35 @@ void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies) {
   }
 }
 
-// Pairs that come nearer to each other in the step than their contacts foresee are followed to where they meet, and
-// what is fast stops there until the next step. Pairs in contact are the contact solver's matter.
+// Pairs without contact points that come much nearer to each other in the step are followed to where they meet, and
+// what contacts move stops there until the next step. Pairs with points are the contact solver's matter.
 void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew) {
+  for (int round = 0; round < kImpactRounds; ++round) {  // what stops may be in the way of what follows
+    findFastPairs(step, bodies);
+    if (fastPairs_.empty() || !stopFastPairs(step, bodies, crew)) return;
+  }
+}
+
+void RigidSolver::findFastPairs(const RigidStep& step, const BodySet& bodies) {
   fastPairs_.clear();
   const std::vector<Contact>& contacts = list_.contacts();
+  auto way = [&](std::uint32_t i) {
+    return i == bodies.size() ? Vec2(0.0, 0.0) : Vec2(step.dt * bodies.motion(i).velocity);
+  };
+  auto sweep = [&](std::uint32_t i) {
+    return i == bodies.size() ? 0.0 : step.dt * std::abs(bodies.motion(i).spin) * bodies.radius(i);
+  };
   for (std::uint32_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     if (c.count > 0 || (awake_[c.bodyA] == 0 && awake_[c.bodyB] == 0)) continue;
-    const double thin = std::min(poses_.thickness[c.bodyA], poses_.thickness[c.bodyB]);
-    if (poses_.closing(c.bodyA, c.bodyB) < kFast * thin || !list_.reach(c.a).overlaps(list_.reach(c.b))) continue;
-    fastPairs_.push_back({k, step.dt});
+    const double nearer = (way(c.bodyB) - way(c.bodyA)).norm() + sweep(c.bodyA) + sweep(c.bodyB);
+    if (nearer > kFast * std::min(poses_.thickness[c.bodyA], poses_.thickness[c.bodyB]))
+      fastPairs_.push_back({k, step.dt});
   }
-  if (fastPairs_.empty()) return;
+}
+
+bool RigidSolver::stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& crew) {
+  const std::vector<Contact>& contacts = list_.contacts();
   auto motionOf = [&](std::uint32_t i) {
     if (i == bodies.size()) return RigidMotion{Transform(), {0.0, 0.0}, 0.0};
     const BodyMotion& m = bodies.motion(i);
@@ -295,11 +312,14 @@ void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& cr
     const Contact& c = contacts[pair.contact];
     for (const std::uint32_t i : {c.bodyA, c.bodyB}) impact_[i] = std::min(impact_[i], pair.time);
   }
+  bool any = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (impact_[i] >= step.dt || awake_[i] == 0 || bodies.definition(i).hinge) continue;
     const BodyMotion& m = bodies.motion(i);
     bodies.setMotion(i, impact_[i] / step.dt * m.velocity, impact_[i] / step.dt * m.spin);
+    any = true;
   }
+  return any;
 }
 
 // An island sleeps when all of it has hardly moved for a while.
@@ -345,7 +365,7 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
     wakeIslands(bodies, stats);
     loadBodies(bodies);
     findFlying(bodies);
-    solver_.prepare(list_, bodies, poses_, awake_, {h, substeps, 2.0 * step.gravityScale * step.dt});
+    solver_.prepare(list_, bodies, poses_, awake_, {h, step.dt, step.gravityScale});
     for (int k = 0; k < substeps; ++k) {
       integrateVelocities(step, bodies, h, stats, crew);
       solver_.warmStart(bodies_, crew);
@@ -368,6 +388,16 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
   fallAsleep(step, bodies, stats);
   stats.contacts = solver_.size();
   for (const std::uint8_t a : awake_) stats.awake += a;
+}
+
+double RigidSolver::travelTime(const BodySet& bodies) const {
+  double time = kInfinity;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies.isFree(i)) continue;
+    const double speed = bodies.freeState(i).velocity.norm();
+    if (speed > 0.0) time = std::min(time, 0.5 * bodies.thickness(i) / speed);
+  }
+  return time;
 }
 
 void RigidSolver::archive(const BodySet& bodies, Archive& a) {

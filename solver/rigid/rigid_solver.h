@@ -40,6 +40,9 @@ class RigidSolver {
   /// constant force. Scripted motions are those of BodySet::beginStep. The same bits on any number of threads.
   void advance(const RigidStep& step, BodySet& bodies, RigidStats& stats);
 
+  /// The time in which some free body travels half of its own thickness [s].
+  double travelTime(const BodySet& bodies) const;
+
   /// Of the last step, by body; not saved.
   const BodyImpulse& felt(std::size_t body) const { return felt_[body]; }
 
@@ -62,6 +65,8 @@ class RigidSolver {
   void turnHinged(const BodySet& bodies, double h, RigidStats& stats);
   void storeMotions(const RigidStep& step, BodySet& bodies);
   void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
+  void findFastPairs(const RigidStep& step, const BodySet& bodies);
+  bool stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& crew);
   void fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats);
   std::uint32_t rootOf(std::uint32_t body);
 
