@@ -14,7 +14,7 @@ constexpr double kBounce = 0.2;      // of √(g · thickness): what meets slowe
 constexpr double kOverrun = 0.02;    // of the thinner body
 constexpr int kIterations = 8;      // at most
 constexpr int kColdIterations = 50;  // where no point bears anything yet: a scene's start
-constexpr double kTouching = 2e-5;   // thicknesses apart that count as touching
+constexpr double kTouching = 2e-3;   // thicknesses apart that count as touching
 constexpr double kPushLimit = 20.0;  // thicknesses of the thinner body a second
 
 double mixedFriction(double a, double b) { return std::sqrt(a * b); }
@@ -318,9 +318,9 @@ void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew) {
     forEachColour(crew, [&](Constraint& c) {
       SolverBody& a = bodies[c.a];
       SolverBody& b = bodies[c.b];
-      // Friction first: what keeps apart has the last word.
-      for (std::uint32_t i = 0; i < c.count; ++i) rub(c, c.points[i], a, b);
       if (keepApart(c, a, b) > kOverrun) overruns_.store(true, std::memory_order_relaxed);
+      // Afterwards, so that a point that is new rubs as it bears: a rolling disc has a new one in every step.
+      for (std::uint32_t i = 0; i < c.count; ++i) rub(c, c.points[i], a, b);
     });
     if (!overruns_.load(std::memory_order_relaxed)) return;
   }
