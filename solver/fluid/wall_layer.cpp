@@ -15,8 +15,8 @@ namespace {
 constexpr double kRecession = 0.0856018;
 constexpr float kMostFilled = 0.6f;  // a particle with more wall around it has no one wall to go along
 // A particle with more wall round it than this, by walls that face each other, is a film that is not resolved (the gap
-// is narrower than about half a spacing). One row of particles can not give way to what shuts the gap.
-constexpr float kFilm = 0.6f;
+// is narrower than about 0.8 of a spacing). One row of particles can not give way to what shuts the gap.
+constexpr float kFilm = 0.5f;
 constexpr double kOpposed = 0.5;           // of the walls' gradients' lengths is left of their sum
 constexpr double kSmallestDistance = 0.1;  // [dx] to a wall that a particle sticks to; it moves with it then
 constexpr double kLongestMiter = 4.0;      // of the recession, at needles
