@@ -415,10 +415,13 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
         const Vec2 solved =
             dx_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
         const Vec2 before = v + solved / dt;
-        const Vec2 after = alongWalls(before, path);
-        const Vec2 shift = (path.x - at - dt * after) / dx_;
+        const Vec2 shift = (path.x - at - dt * alongWalls(before, path)) / dx_;
         shiftX_[i] = solvedX_[i] + static_cast<float>(shift.x());
         shiftY_[i] = solvedY_[i] + static_cast<float>(shift.y());
+        // As it will be computed from the shift, for the books.
+        const Vec2 shifted(static_cast<double>(shiftX_[i] - solvedX_[i]),
+                           static_cast<double>(shiftY_[i] - solvedY_[i]));
+        const Vec2 after = (path.x - at - dx_ * shifted) / dt;
         // It is not where its density was found: to the next sub-step it is new.
         if ((path.x - to).norm() > kDisplaced * dx_) density[i] = 0.0f;
         to = path.x;

@@ -12,7 +12,7 @@ constexpr double kPartShare = 0.4;      // of an overlap that a sub-step takes a
 // sub-step.
 constexpr double kBounce = 0.2;      // of √(g · thickness): what meets slower does not bounce
 constexpr double kOverrun = 0.02;    // of the thinner body
-constexpr int kIterations = 8;      // at most
+constexpr int kIterations = 8;       // at most
 constexpr int kColdIterations = 50;  // where no point bears anything yet: a scene's start
 constexpr double kTouching = 2e-3;   // thicknesses apart that count as touching
 constexpr double kPushLimit = 20.0;  // thicknesses of the thinner body a second

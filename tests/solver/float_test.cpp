@@ -92,9 +92,9 @@ TEST(Float, light_and_heavy_bodies_stay_stable) {
 }
 
 // A disc at the centre of a closed circular tank full of fluid starts to fall with (m − m_f) g/(m + m_a), where
-// m_a = ρπa²(b² + a²)/(b² − a²) (Lamb, Hydrodynamics, art. 69: potential flow between circles). pbf lets a fluid of less
-// than 98 % of its density be compressed, and a full tank takes up that slack first; the speed after a tenth of a second
-// is judged, and is not better than a quarter.
+// m_a = ρπa²(b² + a²)/(b² − a²) (Lamb, Hydrodynamics, art. 69: potential flow between circles). pbf lets a fluid of
+// less than 98 % of its density be compressed, and a full tank takes up that slack first; the speed after a tenth of a
+// second is judged, and is not better than a quarter.
 TEST(Float, a_disc_in_a_full_circular_tank_falls_with_its_added_mass) {
   const double a = 0.2, b = 0.6, dx = 0.02;
   for (const double ratio : {0.5, 2.0, 10.0}) {
