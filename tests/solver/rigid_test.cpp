@@ -320,6 +320,36 @@ TEST(Rigid, a_block_tips_over_from_the_angular_speed_of_the_books_on) {
   }
 }
 
+// Housner (1963): the block turns about one lower corner, lands flat, and goes on about the other one.
+TEST(Rigid, a_rocking_block_lands_in_time_and_loses_what_the_landing_takes) {
+  struct Case {
+    double b, h, share, quarter, ratio;  // quarter of the lossless period [s]; angular speed after over before
+  };
+  for (const Case& c : {Case{0.25, 1.0, 0.5, 1.9752128603152932 / 4.0, 0.9117647058823529},
+                        Case{0.25, 1.0, 0.8, 3.4345583932668693 / 4.0, 0.9117647058823529},
+                        Case{0.5, 1.0, 0.5, 2.0665206088711696 / 4.0, 0.7},
+                        Case{0.1, 0.5, 0.8, 2.4150584821530874 / 4.0, 0.9423076923076923}}) {
+    WorldDef def = plain();
+    const double tilt = c.share * std::atan(c.b / c.h);
+    BodyDef block = freeBody("block", box(2.0 * c.b, 2.0 * c.h), Rotation::of(tilt).apply({c.b, c.h}));
+    block.angle = tilt;
+    block.friction = 10.0;
+    def.bodies.push_back(block);
+    World world(def);
+    double before = 0.0, landed = 0.0;
+    while (landed == 0.0 && world.time() < 2.0) {
+      before = world.body(0).spin;
+      const double angle = world.body(0).angle;
+      world.step(0.0005);
+      const double now = world.body(0).angle;
+      if (now <= 1e-9) landed = world.time() - 0.0005 * now / (now - angle);
+    }
+    EXPECT_NEAR(landed, c.quarter, 0.01 * c.quarter) << c.b << " x " << c.h << " at " << c.share;
+    for (int k = 0; k < 4; ++k) world.step(0.0005);
+    EXPECT_NEAR(world.body(0).spin / before, c.ratio, 0.02) << c.b << " x " << c.h << " at " << c.share;
+  }
+}
+
 WorldDef stack(int boxes, double size, double lastDensity) {
   WorldDef def = plain();
   const auto shape = std::make_shared<const Polygon>(box(size, size));
