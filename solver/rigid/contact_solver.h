@@ -61,7 +61,8 @@ class ContactSolver {
   struct Point {
     Vec2 armA, armB;    // from the frames' origins at the start of the step [m]
     double separation;  // at the start of the step, without what the arms contribute [m]
-    double inverseNormalMass, tangentMass;
+    double now;         // at the start of the sub-step [m]
+    double inverseNormalMass, normalMass, tangentMass;
     double normalImpulse, tangentImpulse;
     double normalSum, tangentSum;  // over the sub-steps
     double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
@@ -76,8 +77,10 @@ class ContactSolver {
     double touching;                     // [m]
     double pushLimit;                    // [m/s]
     double coupling;                     // of the two points' normal impulses [1/kg]
+    double inverseDeterminant;           // of their matrix [kg²]; 0 where it has none
     std::array<Point, 2> points;
   };
+  struct Velocities;
   struct Colour {
     std::uint32_t begin, end;
   };
@@ -88,11 +91,10 @@ class ContactSolver {
   template <typename Body>
   void forEachColour(Crew& crew, Body&& body);
   void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
-  static void rub(const Constraint& c, Point& p, SolverBody& a, SolverBody& b);
-  double keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
+  static void rub(const Constraint& c, Point& p, Velocities& v);
+  double keepApart(Constraint& c, Velocities& v) const;
   void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
-  static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, SolverBody& a,
-                   SolverBody& b);
+  static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, Velocities& v);
   void pushOne(Constraint& c, SolverBody& a, SolverBody& b) const;
 
   Settings settings_;
