@@ -83,13 +83,12 @@ ContactSolver::Constraint ContactSolver::makeConstraint(std::uint32_t contact, c
 // Greedy, in the order of the list: the first colour that neither body has yet. Contacts with what does not give way
 // come last, where nothing can undo them. A body with more contacts than there are colours has the rest solved one by
 // one.
-void ContactSolver::colour(const std::vector<std::uint32_t>& active, const ContactList& list,
-                           const std::vector<std::uint8_t>& awake) {
+void ContactSolver::colour(const std::vector<std::uint8_t>& awake) {
   taken_.assign(awake.size(), 0);
-  colourOf_.resize(active.size());
+  colourOf_.resize(active_.size());
   start_.assign(2 * kColours + 2, 0);
-  for (std::size_t k = 0; k < active.size(); ++k) {
-    const Contact& contact = list.contacts()[active[k]];
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const ContactRef& contact = active_[k];
     const bool movesA = awake[contact.bodyA] != 0, movesB = awake[contact.bodyB] != 0;
     const bool both = movesA && movesB;
     const std::uint64_t range = both ? (std::uint64_t{1} << kColours) - 1 : ~((std::uint64_t{1} << kColours) - 1);
@@ -112,28 +111,34 @@ void ContactSolver::colour(const std::vector<std::uint32_t>& active, const Conta
     if (start_[c + 1] > start_[c]) colours_.push_back({start_[c], start_[c + 1]});
   }
   serialFrom_ = start_[2 * kColours];
-  order_.resize(active.size());
-  for (std::size_t k = 0; k < active.size(); ++k) order_[start_[colourOf_[k]]++] = active[k];
+  outsideFrom_ = start_[kColours];
+  order_.resize(active_.size());
+  for (std::size_t k = 0; k < active_.size(); ++k) order_[start_[colourOf_[k]]++] = active_[k].contact;
 }
 
 void ContactSolver::prepare(const ContactList& list, const BodySet& bodies, const BodyPoses& poses,
-                            const std::vector<std::uint8_t>& awake, const Settings& settings) {
+                            const std::vector<std::uint8_t>& awake, const Settings& settings, Crew& crew) {
   settings_ = settings;
   active_.clear();
-  for (std::uint32_t k = 0; k < list.contacts().size(); ++k) {
-    const Contact& c = list.contacts()[k];
-    if (c.count > 0 && (awake[c.bodyA] != 0 || awake[c.bodyB] != 0)) active_.push_back(k);
+  for (const ContactRef& c : list.touching()) {
+    if (awake[c.bodyA] != 0 || awake[c.bodyB] != 0) active_.push_back(c);
   }
-  colour(active_, list, awake);
+  colour(awake);
   constraints_.resize(order_.size());
-  anyBounces_ = false;
-  bool cold = true;
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const Constraint& c = constraints_[k] = makeConstraint(order_[k], list, bodies, poses);
-    anyBounces_ = anyBounces_ || c.restitution > 0.0;
-    for (std::uint32_t i = 0; i < c.count; ++i) cold = cold && c.points[i].normalImpulse == 0.0;
-  }
-  iterations_ = cold ? kColdIterations : kIterations;
+  for (std::atomic<bool>* any : {&anyBounces_, &anyBears_, &anyBelt_}) any->store(false, std::memory_order_relaxed);
+  crew.stage(order_.size(), 2 * kBlock, [&](std::size_t begin, std::size_t end) {
+    bool bounces = false, bears = false, belt = false;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Constraint& c = constraints_[k] = makeConstraint(order_[k], list, bodies, poses);
+      bounces = bounces || c.restitution > 0.0;
+      belt = belt || c.belt != 0.0;
+      for (std::uint32_t i = 0; i < c.count; ++i) bears = bears || c.points[i].normalImpulse != 0.0;
+    }
+    if (bounces) anyBounces_.store(true, std::memory_order_relaxed);
+    if (bears) anyBears_.store(true, std::memory_order_relaxed);
+    if (belt) anyBelt_.store(true, std::memory_order_relaxed);
+  });
+  iterations_ = anyBears_.load(std::memory_order_relaxed) ? kIterations : kColdIterations;
 }
 
 template <typename Body>
@@ -222,7 +227,7 @@ inline std::array<double, 2> solvePoints(const Constraint& c, const std::array<d
 
 void ContactSolver::noteApproach(const std::vector<SolverBody>& bodies, Crew& crew) {
   anyFast_.store(false, std::memory_order_relaxed);
-  if (!anyBounces_) return;
+  if (!anyBounces_.load(std::memory_order_relaxed)) return;
   crew.stage(constraints_.size(), 4 * kBlock, [&](std::size_t begin, std::size_t end) {
     bool fast = false;
     for (std::size_t k = begin; k < end; ++k) {
@@ -375,30 +380,49 @@ void ContactSolver::bounce(std::vector<SolverBody>& bodies, Crew& crew) {
   });
 }
 
+void ContactSolver::handOver(const Constraint& c, std::vector<std::array<double, 3>>& onBody) const {
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    const Point& p = c.points[i];
+    const Vec2 impulse = p.normalSum * c.normal + p.tangentSum * leftNormal(c.normal);
+    auto give = [&](std::uint32_t body, const Vec2& arm, const Vec2& to) {
+      std::array<double, 3>& sum = onBody[body];
+      sum[0] += to.x(), sum[1] += to.y(), sum[2] += cross(arm, to);
+    };
+    give(c.a, p.armA, -impulse);
+    give(c.b, p.armB, impulse);
+  }
+}
+
+// Free bodies of one colour are all different; what does not give way is in many contacts, and its sums are made in
+// their order.
 ContactTotals ContactSolver::finish(const std::vector<SolverBody>& bodies, ContactList& list,
-                                    std::vector<std::array<double, 3>>& onBody) const {
+                                    std::vector<std::array<double, 3>>& onBody, Crew& crew) {
+  std::vector<Contact>& contacts = list.contacts();
+  forEachColour(crew, [&](Constraint& c) {
+    for (std::uint32_t i = 0; i < c.count; ++i) {
+      contacts[c.contact].points[i].normalForce = c.points[i].normalImpulse / settings_.h;
+      contacts[c.contact].points[i].tangentForce = c.points[i].tangentImpulse / settings_.h;
+    }
+    if (c.inverseMassA > 0.0 && c.inverseMassB > 0.0) handOver(c, onBody);
+  });
   ContactTotals totals;
-  for (const Constraint& c : constraints_) {
-    Contact& contact = list.contacts()[c.contact];
+  for (std::size_t k = outsideFrom_; k < constraints_.size(); ++k) {
+    const Constraint& c = constraints_[k];
+    if (c.inverseMassA > 0.0 && c.inverseMassB > 0.0) continue;
+    handOver(c, onBody);
+    const bool isA = c.inverseMassA == 0.0;
+    const SolverBody& outside = bodies[isA ? c.a : c.b];
     for (std::uint32_t i = 0; i < c.count; ++i) {
       const Point& p = c.points[i];
-      contact.points[i].normalForce = p.normalImpulse / settings_.h;
-      contact.points[i].tangentForce = p.tangentImpulse / settings_.h;
       const Vec2 impulse = p.normalSum * c.normal + p.tangentSum * leftNormal(c.normal);
-      auto give = [&](std::uint32_t body, const Vec2& arm, const Vec2& to) {
-        std::array<double, 3>& sum = onBody[body];
-        sum[0] += to.x(), sum[1] += to.y(), sum[2] += cross(arm, to);
-      };
-      give(c.a, p.armA, -impulse);
-      give(c.b, p.armB, impulse);
-      auto fromOutside = [&](const SolverBody& outside, const Vec2& arm, const Vec2& on) {
-        totals.outside += on;
-        totals.work += on.dot(Vec2(outside.vx, outside.vy) + cross(outside.w, arm));
-      };
-      if (c.inverseMassA == 0.0) fromOutside(bodies[c.a], p.armA, impulse);
-      if (c.inverseMassB == 0.0) fromOutside(bodies[c.b], p.armB, -impulse);
-      totals.work += p.tangentSum * c.belt;
+      const Vec2 on = isA ? impulse : Vec2(-impulse);
+      totals.outside += on;
+      totals.work += on.dot(Vec2(outside.vx, outside.vy) + cross(outside.w, isA ? p.armA : p.armB));
     }
+  }
+  if (!anyBelt_.load(std::memory_order_relaxed)) return totals;
+  for (const Constraint& c : constraints_) {
+    for (std::uint32_t i = 0; i < c.count; ++i) totals.work += c.points[i].tangentSum * c.belt;
   }
   return totals;
 }
