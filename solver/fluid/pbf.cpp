@@ -23,6 +23,7 @@ constexpr double kTolerance = 2e-4;     // mean density gained in a sub-step
 constexpr double kRelaxation = 0.6;     // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
 constexpr float kStabilization = 0.3f;  // share of the density error that is shifted away a sub-step
 constexpr float kLoose = 0.02f;         // below 1 − this a particle is free to be compressed
+constexpr double kDisplaced = 0.02;     // [dx] by which a wall has kept a particle from where it was to go
 constexpr float kNever = 1e6f;          // density at which a film bears
 constexpr float kSmoothing = 0.05f;  // XSPH (the paper's eq. 17), times √κ: a viscosity of 0.05·dx·√p, on any step
 constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
@@ -390,6 +391,7 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const DiscContact point{0.0, 0.0, 0.0, filter(), true};
   const double dt = context.dt, rate = 1.0 / dt;
+  const auto density = pool.column(density_);
   auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
   contacts_.begin(pool.size());
   crushed_.assign(blockCount(pool.size()), 0);
@@ -413,10 +415,15 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
         const Vec2 solved =
             dx_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
         const Vec2 before = v + solved / dt;
-        const Vec2 after = alongWalls(before, path);
-        const Vec2 shift = (path.x - at - dt * after) / dx_;
+        const Vec2 shift = (path.x - at - dt * alongWalls(before, path)) / dx_;
         shiftX_[i] = solvedX_[i] + static_cast<float>(shift.x());
         shiftY_[i] = solvedY_[i] + static_cast<float>(shift.y());
+        // As it will be computed from the shift, for the books.
+        const Vec2 shifted(static_cast<double>(shiftX_[i] - solvedX_[i]),
+                           static_cast<double>(shiftY_[i] - solvedY_[i]));
+        const Vec2 after = (path.x - at - dx_ * shifted) / dt;
+        // It is not where its density was found: to the next sub-step it is new.
+        if ((path.x - to).norm() > kDisplaced * dx_) density[i] = 0.0f;
         to = path.x;
         path.x = at + dt * after;
         contacts_.addMean(i, path, at, before, dt);
@@ -425,7 +432,7 @@ void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, Impuls
       if (const PathLeak leak = checkPath(context.obstacles, at, to, point, path); leak.leaked) {
         // Only what is squeezed can be here: it has no free place.
         const auto particle = static_cast<std::uint32_t>(i);
-        if (path.crushed)
+        if (path.crushed || target_[i] == kNever)
           ++crushed_[begin / kBlockSize];
         else
           leaks_[begin / kBlockSize].push_back({particle, at, to, leak.inside, leak.body, leak.at});

@@ -245,6 +245,20 @@ bool anyThin(std::span<const WallEdge> edges) {
   return false;
 }
 
+bool hiddenByThin(std::span<const WallEdge> edges, const Vec2& p) {
+  std::array<Vec2, kMaxWallEdges> crossed;
+  std::size_t n = 0;
+  for (const WallEdge& e : edges) {
+    if (!hidesPoint(e, p)) continue;
+    const Vec2 direction = (e.b - e.a).normalized();
+    for (std::size_t k = 0; k < n; ++k) {
+      if (-crossed[k].dot(direction) > kSharpest) return true;
+    }
+    crossed[n++] = direction;
+  }
+  return false;
+}
+
 HalfPlane halfPlane(double distance) {
   static const Table table;
   const double x = std::abs(distance) * (kTableSize / kReach);

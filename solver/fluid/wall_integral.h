@@ -46,6 +46,10 @@ std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare
 /// faces are nearer than the support radius, or a corner sharper than 40 degrees; also solids of two owners that cross.
 bool anyThin(std::span<const WallEdge> edges);
 
+/// Does the segment from the origin to `p` go through a thin solid: in at one face and out at one that looks the other
+/// way, but for 40 degrees? From either of its ends the answer is the same.
+bool hiddenByThin(std::span<const WallEdge> edges, const Vec2& p);
+
 /// λ and −dλ/dd of a half-plane at signed distance d spacings from its edge (d > 0 outside), from a table of cubic
 /// interpolation; error below 1e-9 (tested). Outside |d| < 2: 0 or 1.
 struct HalfPlane {

@@ -15,8 +15,8 @@ namespace {
 constexpr double kRecession = 0.0856018;
 constexpr float kMostFilled = 0.6f;  // a particle with more wall around it has no one wall to go along
 // A particle with more wall round it than this, by walls that face each other, is a film that is not resolved (the gap
-// is narrower than about half a spacing). One row of particles can not give way to what shuts the gap.
-constexpr float kFilm = 0.6f;
+// is narrower than about 0.8 of a spacing). One row of particles can not give way to what shuts the gap.
+constexpr float kFilm = 0.5f;
 constexpr double kOpposed = 0.5;           // of the walls' gradients' lengths is left of their sum
 constexpr double kSmallestDistance = 0.1;  // [dx] to a wall that a particle sticks to; it moves with it then
 constexpr double kLongestMiter = 4.0;      // of the recession, at needles
@@ -108,11 +108,11 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   const std::span<const WallEdge> edges(buffer.data(), n);
   // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be. Round a
   // corner of a thick solid neighbours are felt: the two sides are one fluid there, and a pair that appears when the
-  // corner no longer hides it is a blow.
+  // corner no longer hides it is a blow. Whether a pair is hidden depends on its own line, so that both agree.
   bool facesAway = false;
   for (const WallEdge& e : edges) facesAway = facesAway || cross(e.a, e.b) > 0.0;
   const bool thick = facesAway && !anyThin(edges);
-  if (facesAway && !thick) findHidden(edges, grid, x, y, i, block);
+  if (facesAway) findHidden(edges, grid, x, y, i, block);
   std::array<WallEdge, kMaxWallEdges> whole;
   const bool drag = obstacles.anySticks();
   if (drag) std::copy_n(buffer.begin(), n, whole.begin());
@@ -178,12 +178,9 @@ void WallLayer::findHidden(std::span<const WallEdge> edges, const CellGrid& grid
       for (std::uint32_t j = begin; j < std::min(run.end, begin + 64); ++j) {
         const Vec2 p = Vec2(x[j] + run.shiftX - x[i], y[j] + run.shiftY - y[i]) * scale;
         if (j == i || p.squaredNorm() >= kernel::kSupport * kernel::kSupport) continue;
-        for (const WallEdge& e : edges) {
-          if (!hidesPoint(e, p)) continue;
-          visible &= ~(1ull << (j - begin));
-          found = true;
-          break;
-        }
+        if (!hiddenByThin(edges, p)) continue;
+        visible &= ~(1ull << (j - begin));
+        found = true;
       }
       block.words.push_back(visible);
     }

@@ -14,7 +14,7 @@ constexpr double kBounce = 0.2;         // of √(g · thickness): what meets sl
 constexpr double kOverrun = 0.02;    // of the thinner body
 constexpr int kIterations = 8;       // at most
 constexpr int kColdIterations = 50;  // where no point bears anything yet: a scene's start
-constexpr double kTouching = 2e-5;   // thicknesses apart that count as touching
+constexpr double kTouching = 2e-3;   // thicknesses apart that count as touching
 constexpr double kWellPosed = 1e-6;  // of two points as if alone: what their determinant must be
 constexpr double kPushLimit = 20.0;  // thicknesses of the thinner body a second
 
@@ -342,9 +342,9 @@ void ContactSolver::solve(std::vector<SolverBody>& bodies, Crew& crew) {
       SolverBody& a = bodies[c.a];
       SolverBody& b = bodies[c.b];
       Velocities v(a, b);
-      // Friction first: what keeps apart has the last word.
-      for (std::uint32_t i = 0; i < c.count; ++i) rub(c, c.points[i], v);
       if (keepApart(c, v) > kOverrun) overruns_.store(true, std::memory_order_relaxed);
+      // Afterwards, so that a point that is new rubs as it bears: a rolling disc has a new one in every step.
+      for (std::uint32_t i = 0; i < c.count; ++i) rub(c, c.points[i], v);
       v.store(c, a, b);
     });
     if (!overruns_.load(std::memory_order_relaxed)) return;

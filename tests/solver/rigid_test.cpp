@@ -387,11 +387,13 @@ TEST(Rigid, fast_bodies_do_not_pass_thin_walls) {
     b.restitution = 0.5;
     def.bodies.push_back(b);
     World world(def);
+    double slowest = speed;
     for (int k = 0; k < 60; ++k) {
       world.step(0.01);
+      slowest = std::min(slowest, world.body(1).velocity.x());
       EXPECT_LT(world.body(1).transform.position.x(), 10.0) << speed << " m/s, step " << k;
     }
-    EXPECT_LT(world.body(1).velocity.x(), 0.0) << "it comes back";
+    EXPECT_LT(slowest, 0.0) << "it comes back";
   }
 }
 
