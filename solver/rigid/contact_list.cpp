@@ -245,6 +245,12 @@ void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& cr
   crew.stage(contacts_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) collide(contacts_[k], poses);
   });
+  touching_.clear();
+  apart_.clear();
+  for (std::uint32_t k = 0; k < contacts_.size(); ++k) {
+    const Contact& c = contacts_[k];
+    (c.count > 0 ? touching_ : apart_).push_back({k, c.bodyA, c.bodyB});
+  }
 }
 
 void ContactList::archive(Archive& a) {

@@ -36,6 +36,11 @@ struct Contact {
   std::array<ContactPoint, 2> points;
 };
 
+/// Which contact, and between whom: what passes over all of them read, without the contacts themselves.
+struct ContactRef {
+  std::uint32_t contact = 0, bodyA = 0, bodyB = 0;
+};
+
 /// Where the bodies are at the start of a step, and how far each may get.
 struct BodyPoses {
   std::vector<Transform> pose;      // by body; the domain's last
@@ -62,6 +67,9 @@ class ContactList {
 
   std::vector<Contact>& contacts() { return contacts_; }
   const std::vector<Contact>& contacts() const { return contacts_; }
+  /// Of the last `update`, in the order of the list: those with points, and those without.
+  const std::vector<ContactRef>& touching() const { return touching_; }
+  const std::vector<ContactRef>& apart() const { return apart_; }
   const std::vector<Proxy>& proxies() const { return proxies_; }
   const ConvexShape& shape(std::uint32_t proxy) const { return *proxies_[proxy].shape; }
   /// Smallest inner radius of a body's pieces [m].
@@ -98,6 +106,7 @@ class ContactList {
   std::vector<double> thickness_;
   std::vector<Box> reach_, fat_;  // by proxy
   std::vector<Contact> contacts_, before_;
+  std::vector<ContactRef> touching_, apart_;
   std::vector<std::uint32_t> order_;         // proxies along x
   std::vector<std::uint32_t> byKey_, rank_;  // proxies by key, and each one's place there
   std::vector<Box> sorted_;

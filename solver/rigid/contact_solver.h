@@ -40,7 +40,7 @@ class ContactSolver {
   /// Takes the contacts that have points and of which one body is awake, in the order of the list; colours them.
   /// `awake` by body (the domain's last is 0).
   void prepare(const ContactList& list, const BodySet& bodies, const BodyPoses& poses,
-               const std::vector<std::uint8_t>& awake, const Settings& settings);
+               const std::vector<std::uint8_t>& awake, const Settings& settings, Crew& crew);
 
   // The parts of a sub-step, in order. Bodies by index, the domain's last.
   void warmStart(std::vector<SolverBody>& bodies, Crew& crew);
@@ -54,14 +54,15 @@ class ContactSolver {
   /// Impulses back to the list; adds what bodies got to `onBody` (impulse x, y, moment about the centre of mass, by
   /// body).
   ContactTotals finish(const std::vector<SolverBody>& bodies, ContactList& list,
-                       std::vector<std::array<double, 3>>& onBody) const;
+                       std::vector<std::array<double, 3>>& onBody, Crew& crew);
   std::size_t size() const { return constraints_.size(); }
 
  private:
   struct Point {
     Vec2 armA, armB;    // from the frames' origins at the start of the step [m]
     double separation;  // at the start of the step, without what the arms contribute [m]
-    double inverseNormalMass, tangentMass;
+    double now;         // at the start of the sub-step [m]
+    double inverseNormalMass, normalMass, tangentMass;
     double normalImpulse, tangentImpulse;
     double normalSum, tangentSum;  // over the sub-steps
     double approach;               // relative velocity along the normal before the sub-step's impulses [m/s]
@@ -76,34 +77,39 @@ class ContactSolver {
     double touching;                     // [m]
     double pushLimit;                    // [m/s]
     double coupling;                     // of the two points' normal impulses [1/kg]
+    double inverseDeterminant;           // of their matrix [kg²]; 0 where it has none
     std::array<Point, 2> points;
   };
+  struct Velocities;
   struct Colour {
     std::uint32_t begin, end;
   };
-  void colour(const std::vector<std::uint32_t>& active, const ContactList& list,
-              const std::vector<std::uint8_t>& awake);
+  void colour(const std::vector<std::uint8_t>& awake);
+  void handOver(const Constraint& c, std::vector<std::array<double, 3>>& onBody) const;
   Constraint makeConstraint(std::uint32_t contact, const ContactList& list, const BodySet& bodies,
                             const BodyPoses& poses) const;
   template <typename Body>
   void forEachColour(Crew& crew, Body&& body);
   void noteApproach(const std::vector<SolverBody>& bodies, Crew& crew);
-  static void rub(const Constraint& c, Point& p, SolverBody& a, SolverBody& b);
-  double keepApart(Constraint& c, SolverBody& a, SolverBody& b) const;
+  static void rub(const Constraint& c, Point& p, Velocities& v);
+  double keepApart(Constraint& c, Velocities& v) const;
   void bounceOne(Constraint& c, SolverBody& a, SolverBody& b) const;
-  static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, SolverBody& a,
-                   SolverBody& b);
+  static void part(Constraint& c, const std::array<double, 2>& least, const std::array<bool, 2>& blow, Velocities& v);
   void pushOne(Constraint& c, SolverBody& a, SolverBody& b) const;
 
   Settings settings_;
   int iterations_ = 1;                   // a sub-step
-  bool anyBounces_ = false;              // any that could
+  std::atomic<bool> anyBounces_{false};  // any that could
+  std::atomic<bool> anyBears_{false};    // any that bore something in the step before
+  std::atomic<bool> anyBelt_{false};     // any whose surfaces run
   std::atomic<bool> overruns_{false};    // any that would still overlap
   std::atomic<bool> anyFast_{false};     // any that may in this sub-step
   std::vector<Constraint> constraints_;  // by colour
   std::vector<Colour> colours_;
-  std::vector<std::uint32_t> active_, colourOf_, order_, start_;
+  std::vector<ContactRef> active_;
+  std::vector<std::uint32_t> colourOf_, order_, start_;
   std::vector<std::uint64_t> taken_;  // colours of each body's contacts
+  std::uint32_t outsideFrom_ = 0;     // constraints with what does not give way
   std::uint32_t serialFrom_ = 0;      // constraints that found no colour
 };
 

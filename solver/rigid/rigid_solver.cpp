@@ -36,31 +36,39 @@ void RigidSolver::admitBodies(const BodySet& bodies) {
   onBody_.assign(n, {0.0, 0.0, 0.0});
   felt_.assign(n, {});
   hinged_.clear();
+  free_.assign(n, 0);
+  isHinged_.assign(n, 0);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies.definition(i).hinge) hinged_.push_back(static_cast<std::uint32_t>(i));
+    free_[i] = bodies.isFree(i) ? 1 : 0;
+    if (!bodies.definition(i).hinge) continue;
+    hinged_.push_back(static_cast<std::uint32_t>(i));
+    isHinged_[i] = 1;
   }
+  gravityOf_.resize(blockCount(n, kBlock));
   motorImpulse_.assign(hinged_.size(), 0.0);
 }
 
 // A body can get as far as its velocity, what gravity and pressure add, and a little more for what others push.
-void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyMotion& m = bodies.motion(i);
-    poses_.pose[i] = m.transform();
-    const bool free = bodies.isFree(i);
-    const FreeState& f = bodies.freeState(i);
-    const Vec2 v = free ? f.velocity : m.velocity;
-    const double w = free ? f.spin : m.spin;
-    awake_[i] = free && f.asleep == 0.0;
-    const bool moves = free ? awake_[i] != 0 : v.squaredNorm() > 0.0 || w != 0.0;
-    poses_.still[i] = moves ? 0 : 1;
-    poses_.thickness[i] = free ? list_.thickness(i) : kInfinity;
-    poses_.drift[i] = moves ? Vec2(step.dt * v) : Vec2(0.0, 0.0);
-    poses_.spread[i] = kSlop * list_.thickness(i);
-    if (!moves) continue;
-    poses_.spread[i] += step.dt * std::abs(w) * bodies.radius(i);
-    if (free) poses_.spread[i] += 2.0 * step.gravityScale * step.dt * step.dt + 0.5 * poses_.margin(i, i);
-  }
+void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies, Crew& crew) {
+  crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const BodyMotion& m = bodies.motion(i);
+      poses_.pose[i] = m.transform();
+      const bool free = free_[i] != 0;
+      const FreeState& f = bodies.freeState(i);
+      const Vec2 v = free ? f.velocity : m.velocity;
+      const double w = free ? f.spin : m.spin;
+      awake_[i] = free && f.asleep == 0.0;
+      const bool moves = free ? awake_[i] != 0 : v.squaredNorm() > 0.0 || w != 0.0;
+      poses_.still[i] = moves ? 0 : 1;
+      poses_.thickness[i] = free ? list_.thickness(i) : kInfinity;
+      poses_.drift[i] = moves ? Vec2(step.dt * v) : Vec2(0.0, 0.0);
+      poses_.spread[i] = kSlop * list_.thickness(i);
+      if (!moves) continue;
+      poses_.spread[i] += step.dt * std::abs(w) * bodies.radius(i);
+      if (free) poses_.spread[i] += 2.0 * step.gravityScale * step.dt * step.dt + 0.5 * poses_.margin(i, i);
+    }
+  });
 }
 
 std::uint32_t RigidSolver::rootOf(std::uint32_t body) {
@@ -78,25 +86,24 @@ void RigidSolver::wakeIslands(BodySet& bodies, RigidStats& stats) {
   parent_.resize(n + 1);
   for (std::uint32_t i = 0; i <= n; ++i) parent_[i] = i;
   std::vector<std::uint8_t>& mayRest = islandMayRest_;
-  for (const Contact& c : list_.contacts()) {
-    if (c.count == 0 || c.bodyA >= n || c.bodyB >= n || !bodies.isFree(c.bodyA) || !bodies.isFree(c.bodyB)) continue;
+  for (const ContactRef& c : list_.touching()) {
+    if (free_[c.bodyA] == 0 || free_[c.bodyB] == 0) continue;
     const std::uint32_t a = rootOf(c.bodyA), b = rootOf(c.bodyB);
     parent_[std::max(a, b)] = std::min(a, b);
   }
   mayRest.assign(n + 1, 1);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (bodies.isFree(i) && awake_[i] != 0) mayRest[rootOf(i)] = 0;
+    if (awake_[i] != 0) mayRest[rootOf(i)] = 0;
   }
-  for (const Contact& c : list_.contacts()) {
-    if (c.count == 0) continue;
+  for (const ContactRef& c : list_.touching()) {
     auto stirs = [&](std::uint32_t body, std::uint32_t other) {
-      if (body < n && !bodies.isFree(body) && poses_.still[body] == 0) mayRest[rootOf(other)] = 0;
+      if (free_[body] == 0 && poses_.still[body] == 0) mayRest[rootOf(other)] = 0;
     };
     stirs(c.bodyA, c.bodyB);
     stirs(c.bodyB, c.bodyA);
   }
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (!bodies.isFree(i)) continue;
+    if (free_[i] == 0) continue;
     stats.islands += rootOf(i) == i && mayRest[i] == 0;
     if (awake_[i] != 0 || mayRest[rootOf(i)] != 0) continue;
     awake_[i] = 1;
@@ -107,25 +114,25 @@ void RigidSolver::wakeIslands(BodySet& bodies, RigidStats& stats) {
 // Bodies that touch nothing in this step.
 void RigidSolver::findFlying(const BodySet& bodies) {
   flies_.assign(bodies.size() + 1, 1);
-  for (const Contact& c : list_.contacts()) {
-    if (c.count > 0) flies_[c.bodyA] = flies_[c.bodyB] = 0;
-  }
+  for (const ContactRef& c : list_.touching()) flies_[c.bodyA] = flies_[c.bodyB] = 0;
 }
 
-void RigidSolver::loadBodies(const BodySet& bodies) {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    SolverBody& b = bodies_[i];
-    b = {};
-    onBody_[i] = {0.0, 0.0, 0.0};
-    if (bodies.isFree(i)) {
-      if (awake_[i] == 0) continue;
-      const FreeState& f = bodies.freeState(i);
-      b.vx = f.velocity.x(), b.vy = f.velocity.y(), b.w = f.spin;
-    } else {
-      const BodyMotion& m = bodies.motion(i);
-      b.vx = m.velocity.x(), b.vy = m.velocity.y(), b.w = m.spin;
+void RigidSolver::loadBodies(const BodySet& bodies, Crew& crew) {
+  crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      SolverBody& b = bodies_[i];
+      b = {};
+      onBody_[i] = {0.0, 0.0, 0.0};
+      if (free_[i] != 0) {
+        if (awake_[i] == 0) continue;
+        const FreeState& f = bodies.freeState(i);
+        b.vx = f.velocity.x(), b.vy = f.velocity.y(), b.w = f.spin;
+      } else {
+        const BodyMotion& m = bodies.motion(i);
+        b.vx = m.velocity.x(), b.vy = m.velocity.y(), b.w = m.spin;
+      }
     }
-  }
+  });
   bodies_.back() = {};
   onBody_.back() = {0.0, 0.0, 0.0};
 }
@@ -139,22 +146,29 @@ Vec2 RigidSolver::accelerationOf(const RigidStep& step, const BodySet& bodies, s
 void RigidSolver::integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats,
                                       Crew& crew) {
   crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::array<double, 3> sum{0.0, 0.0, 0.0};
     for (std::size_t i = begin; i < end; ++i) {
       if (awake_[i] == 0) continue;
       SolverBody& b = bodies_[i];
-      const Vec2 a = accelerationOf(step, bodies, i);
+      const MassData& mass = bodies.mass(i);
+      const FreeState& f = bodies.freeState(i);
+      const Vec2 g = step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy));
+      const Vec2 a = g + mass.inverseMass * f.pressure;
       b.vx += h * a.x();
       b.vy += h * a.y();
-      b.w += h * bodies.mass(i).inverseInertia * bodies.freeState(i).pressureTorque;
+      b.w += h * mass.inverseInertia * f.pressureTorque;
+      const Vec2 impulse = h * mass.mass * g;
+      sum[0] += impulse.x();
+      sum[1] += impulse.y();
+      sum[2] += impulse.dot(Vec2(b.vx, b.vy)) - 0.5 * mass.inverseMass * impulse.squaredNorm();
     }
+    gravityOf_[begin / kBlock] = sum;
   });
-  // Booked apart, in the order of the bodies: the sum must not depend on threads.
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (awake_[i] == 0) continue;
-    const SolverBody& b = bodies_[i];
-    const Vec2 impulse = h * bodies.mass(i).mass * step.gravity(poses_.pose[i].position + Vec2(b.dx, b.dy));
-    stats.impulse += impulse;
-    stats.gravityWork += impulse.dot(Vec2(b.vx, b.vy)) - 0.5 * bodies.mass(i).inverseMass * impulse.squaredNorm();
+  // In the order of the blocks: the sum must not depend on threads.
+  for (std::size_t block = 0; block < blockCount(bodies.size(), kBlock); ++block) {
+    const auto& [x, y, work] = gravityOf_[block];
+    stats.impulse += Vec2(x, y);
+    stats.gravityWork += work;
   }
 }
 
@@ -193,7 +207,7 @@ void RigidSolver::integratePositions(const RigidStep& step, const BodySet& bodie
   crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SolverBody& b = bodies_[i];
-      if ((poses_.still[i] != 0 && awake_[i] == 0) || bodies.definition(i).hinge) continue;
+      if ((poses_.still[i] != 0 && awake_[i] == 0) || isHinged_[i] != 0) continue;
       const double w = b.w + b.pw;
       const Rotation turn = Rotation::of(b.turn + h * w);
       b.dx += h * (b.vx + b.px);
@@ -211,8 +225,9 @@ void RigidSolver::integratePositions(const RigidStep& step, const BodySet& bodie
 
 // What sleepers bear they bear on, as in their last sub-step awake.
 void RigidSolver::addSleeping(double dt) {
-  for (const Contact& c : list_.contacts()) {
-    if (c.count == 0 || awake_[c.bodyA] != 0 || awake_[c.bodyB] != 0) continue;
+  for (const ContactRef& ref : list_.touching()) {
+    if (awake_[ref.bodyA] != 0 || awake_[ref.bodyB] != 0) continue;
+    const Contact& c = list_.contacts()[ref.contact];
     for (std::uint32_t k = 0; k < c.count; ++k) {
       const ContactPoint& p = c.points[k];
       const Vec2 impulse = dt * (p.normalForce * c.normal + p.tangentForce * leftNormal(c.normal));
@@ -247,19 +262,21 @@ void RigidSolver::turnHinged(const BodySet& bodies, double h, RigidStats& stats)
   }
 }
 
-void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies) {
+void RigidSolver::storeMotions(const RigidStep& step, BodySet& bodies, Crew& crew) {
   const double rate = 1.0 / step.dt;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    felt_[i] = {{onBody_[i][0], onBody_[i][1]}, onBody_[i][2]};
-    if (!bodies.isFree(i)) continue;
-    const SolverBody& b = bodies_[i];
-    FreeState& f = bodies.freeState(i);
-    if (awake_[i] != 0) {
-      f.velocity = {b.vx, b.vy};
-      f.spin = b.w;
+  crew.stage(bodies.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      felt_[i] = {{onBody_[i][0], onBody_[i][1]}, onBody_[i][2]};
+      if (free_[i] == 0) continue;
+      const SolverBody& b = bodies_[i];
+      FreeState& f = bodies.freeState(i);
+      if (awake_[i] != 0) {
+        f.velocity = {b.vx, b.vy};
+        f.spin = b.w;
+      }
+      bodies.setMotion(i, rate * Vec2(b.dx, b.dy), rate * b.turn);
     }
-    bodies.setMotion(i, rate * Vec2(b.dx, b.dy), rate * b.turn);
-  }
+  });
 }
 
 // Pairs without contact points that come much nearer to each other in the step are followed to where they meet, and
@@ -273,19 +290,18 @@ void RigidSolver::stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& cr
 
 void RigidSolver::findFastPairs(const RigidStep& step, const BodySet& bodies) {
   fastPairs_.clear();
-  const std::vector<Contact>& contacts = list_.contacts();
-  auto way = [&](std::uint32_t i) {
-    return i == bodies.size() ? Vec2(0.0, 0.0) : Vec2(step.dt * bodies.motion(i).velocity);
-  };
+  const auto n = static_cast<std::uint32_t>(bodies.size());
+  auto way = [&](std::uint32_t i) { return i == n ? Vec2(0.0, 0.0) : Vec2(step.dt * bodies.motion(i).velocity); };
   auto sweep = [&](std::uint32_t i) {
-    return i == bodies.size() ? 0.0 : step.dt * std::abs(bodies.motion(i).spin) * bodies.radius(i);
+    return i == n ? 0.0 : step.dt * std::abs(bodies.motion(i).spin) * bodies.radius(i);
   };
-  for (std::uint32_t k = 0; k < contacts.size(); ++k) {
-    const Contact& c = contacts[k];
-    if (c.count > 0 || (awake_[c.bodyA] == 0 && awake_[c.bodyB] == 0)) continue;
+  travel_.resize(n + 1);
+  for (std::uint32_t i = 0; i <= n; ++i) travel_[i] = 1.000001 * (way(i).norm() + sweep(i));
+  for (const ContactRef& c : list_.apart()) {
+    const double much = kFast * std::min(poses_.thickness[c.bodyA], poses_.thickness[c.bodyB]);
+    if (travel_[c.bodyA] + travel_[c.bodyB] <= much || (awake_[c.bodyA] == 0 && awake_[c.bodyB] == 0)) continue;
     const double nearer = (way(c.bodyB) - way(c.bodyA)).norm() + sweep(c.bodyA) + sweep(c.bodyB);
-    if (nearer > kFast * std::min(poses_.thickness[c.bodyA], poses_.thickness[c.bodyB]))
-      fastPairs_.push_back({k, step.dt});
+    if (nearer > much) fastPairs_.push_back({c.contact, step.dt});
   }
 }
 
@@ -314,7 +330,7 @@ bool RigidSolver::stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& cr
   }
   bool any = false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (impact_[i] >= step.dt || awake_[i] == 0 || bodies.definition(i).hinge) continue;
+    if (impact_[i] >= step.dt || awake_[i] == 0 || isHinged_[i] != 0) continue;
     const BodyMotion& m = bodies.motion(i);
     bodies.setMotion(i, impact_[i] / step.dt * m.velocity, impact_[i] / step.dt * m.spin);
     any = true;
@@ -330,16 +346,15 @@ void RigidSolver::fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats&
     if (awake_[i] == 0) continue;
     FreeState& f = bodies.freeState(i);
     const double speed = f.velocity.norm() + std::abs(f.spin) * bodies.radius(i);
-    const bool driven = bodies.definition(i).hinge && bodies.definition(i).hinge->motor;
+    const bool driven = isHinged_[i] != 0 && bodies.definition(i).hinge->motor;
     const bool pushed = f.pressure.squaredNorm() > 0.0 || driven;
     const bool still = speed < kStillSpeed * std::sqrt(step.gravityScale * bodies.radius(i)) && !pushed;
     f.stillFor = still ? f.stillFor + step.dt : 0.0;
     if (f.stillFor < kStillTime) islandMayRest_[rootOf(i)] = 0;
   }
-  for (const Contact& c : list_.contacts()) {
-    if (c.count == 0) continue;
+  for (const ContactRef& c : list_.touching()) {
     auto stirs = [&](std::uint32_t body, std::uint32_t other) {
-      if (body < n && !bodies.isFree(body) && poses_.still[body] == 0) islandMayRest_[rootOf(other)] = 0;
+      if (free_[body] == 0 && poses_.still[body] == 0) islandMayRest_[rootOf(other)] = 0;
     };
     stirs(c.bodyA, c.bodyB);
     stirs(c.bodyB, c.bodyA);
@@ -357,15 +372,15 @@ void RigidSolver::fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats&
 
 void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& stats) {
   admitBodies(bodies);
-  findPoses(step, bodies);
   const int substeps = substepsFor(step.dt);
   const double h = step.dt / substeps;
   Crew::run(list_.contacts().size() >= kCrewFrom, [&](Crew& crew) {
+    findPoses(step, bodies, crew);
     list_.update(bodies, poses_, crew);
     wakeIslands(bodies, stats);
-    loadBodies(bodies);
+    loadBodies(bodies, crew);
     findFlying(bodies);
-    solver_.prepare(list_, bodies, poses_, awake_, {h, step.dt, step.gravityScale});
+    solver_.prepare(list_, bodies, poses_, awake_, {h, step.dt, step.gravityScale}, crew);
     for (int k = 0; k < substeps; ++k) {
       integrateVelocities(step, bodies, h, stats, crew);
       solver_.warmStart(bodies_, crew);
@@ -378,11 +393,11 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
       solver_.bounce(bodies_, crew);
       solveHinges(bodies, h, true, stats);
     }
-    const ContactTotals totals = solver_.finish(bodies_, list_, onBody_);
+    const ContactTotals totals = solver_.finish(bodies_, list_, onBody_, crew);
     stats.impulse += totals.outside;
     stats.work += totals.work;
     addSleeping(step.dt);
-    storeMotions(step, bodies);
+    storeMotions(step, bodies, crew);
     stopAtImpacts(step, bodies, crew);
   });
   fallAsleep(step, bodies, stats);

@@ -53,17 +53,17 @@ class RigidSolver {
 
  private:
   void admitBodies(const BodySet& bodies);
-  void findPoses(const RigidStep& step, const BodySet& bodies);
+  void findPoses(const RigidStep& step, const BodySet& bodies, Crew& crew);
   void wakeIslands(BodySet& bodies, RigidStats& stats);
   void findFlying(const BodySet& bodies);
   Vec2 accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t body) const;
-  void loadBodies(const BodySet& bodies);
+  void loadBodies(const BodySet& bodies, Crew& crew);
   void integrateVelocities(const RigidStep& step, const BodySet& bodies, double h, RigidStats& stats, Crew& crew);
   void solveHinges(const BodySet& bodies, double h, bool last, RigidStats& stats);
   void integratePositions(const RigidStep& step, const BodySet& bodies, double h, Crew& crew);
   void addSleeping(double dt);
   void turnHinged(const BodySet& bodies, double h, RigidStats& stats);
-  void storeMotions(const RigidStep& step, BodySet& bodies);
+  void storeMotions(const RigidStep& step, BodySet& bodies, Crew& crew);
   void stopAtImpacts(const RigidStep& step, BodySet& bodies, Crew& crew);
   void findFastPairs(const RigidStep& step, const BodySet& bodies);
   bool stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& crew);
@@ -75,7 +75,9 @@ class RigidSolver {
   ContactSolver solver_;
   BodyPoses poses_;
   std::vector<SolverBody> bodies_;
+  std::vector<std::uint8_t> free_, isHinged_;  // by body: of the definitions, which are far apart in memory
   std::vector<std::uint8_t> awake_, flies_;
+  std::vector<std::array<double, 3>> gravityOf_;  // by block of bodies: impulse x, y, work
   std::vector<std::uint32_t> parent_, hinged_;
   std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
   std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment
@@ -86,6 +88,7 @@ class RigidSolver {
   };
   std::vector<FastPair> fastPairs_;
   std::vector<double> impact_;  // the first, by body [s]
+  std::vector<double> travel_;  // by body, at most [m]
   std::vector<std::uint8_t> islandMayRest_;
   std::uint64_t version_ = ~std::uint64_t{0};  // of the bodies that the list was built from
 };
