@@ -276,7 +276,7 @@ inline void ContactSolver::rub(const Constraint& c, Point& p, Velocities& v) {
 // Newton's law of restitution where they touch already: blow by blow, as each is handed on.
 inline double ContactSolver::keepApart(Constraint& c, Velocities& v) const {
   double overrun = 0.0;
-  std::array<double, 2> least;
+  std::array<double, 2> least{0.0, 0.0};
   std::array<bool, 2> blow{false, false};
   for (std::uint32_t i = 0; i < c.count; ++i) {
     Point& p = c.points[i];
