@@ -225,7 +225,8 @@ void World::Impl::publishBodies(double dt) {
     if (anyFree) {
       const BodyImpulse& felt = rigid.felt(i);
       state.force += felt.impulse / dt;
-      state.torque += felt.moment / dt;
+      const Vec2 arm = center - bodies.motion(i).transform().position;  // felt is about the frame's origin
+      state.torque += (felt.moment - cross(arm, felt.impulse)) / dt;
     }
     bodyStates[i] = state;
   }

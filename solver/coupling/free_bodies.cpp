@@ -19,15 +19,6 @@ void FreeBodies::push(int owner, const Wrench& impulse, const Wrench& displaceme
   bodies_.setMotion(i, m.velocity + rate * Vec2(displacement[0], displacement[1]), m.spin + rate * displacement[2]);
 }
 
-void FreeBodies::release(int owner) {
-  const auto i = static_cast<std::size_t>(owner);
-  const Wrench had = expected(owner);
-  if (had == Wrench{0.0, 0.0, 0.0}) return;
-  const MassData& m = bodies_.mass(i);
-  push(owner, {0.0, 0.0, 0.0},
-       {-dt_ * m.inverseMass * had[0], -dt_ * m.inverseMass * had[1], -dt_ * m.inverseInertia * had[2]});
-}
-
 void giveImpulse(BodySet& bodies, std::size_t body, const Wrench& impulse) {
   if (impulse[0] == 0.0 && impulse[1] == 0.0 && impulse[2] == 0.0) return;
   FreeState& f = bodies.freeState(body);

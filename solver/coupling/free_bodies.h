@@ -36,13 +36,6 @@ class FreeBodies {
   }
   /// The impulse that it is, and how much farther than its motion the body gets by it [m, rad].
   void push(int owner, const Wrench& impulse, const Wrench& displacement);
-  /// The fluid has left it: takes back what its motion had of a pressure that is no more.
-  void release(int owner);
-  void releaseAll() {
-    for (int i = 0; i < static_cast<int>(count()); ++i) {
-      if (isFree(i)) release(i);
-    }
-  }
   /// Obstacles are where the pushed bodies are. Cost: that of Obstacles::beginStep.
   void settle() { obstacles_.beginStep(bodies_, dt_, reach_); }
 

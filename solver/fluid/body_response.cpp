@@ -6,49 +6,56 @@
 
 namespace froude {
 
-void BodyResponse::begin(FreeBodies* bodies, const WallLayer& walls, std::span<const double> x,
-                         std::span<const double> y, double spacing, double mass, double unit) {
+void BodyResponse::begin(FreeBodies* bodies, const Units& units) {
   bodies_ = bodies;
+  units_ = units;
   links_.clear();
-  touched_.clear();
+  moving_.clear();
   if (bodies == nullptr) return;
-  spacing_ = spacing;
-  unit_ = unit;
   indexOf_.assign(bodies->count(), -1);
+  for (int owner = 0; owner < static_cast<int>(bodies->count()); ++owner) {
+    if (bodies->isFree(owner)) add(owner);
+  }
+}
+
+void BodyResponse::link(const WallLayer& walls, std::span<const double> x, std::span<const double> y) {
+  if (bodies_ == nullptr) return;
   walls.forEachLink([&](const WallLink& link) {
-    if (!bodies->isFree(link.owner)) return;
-    std::int32_t& index = indexOf_[static_cast<std::size_t>(link.owner)];
-    const Vec2 center = bodies->center(link.owner);
-    if (index < 0) {
-      index = static_cast<std::int32_t>(touched_.size());
-      const MassData& data = bodies->mass(link.owner);
-      Body body{link.owner, bodies->hingeArm(link.owner), data.mass / mass, data.inertia / (mass * spacing * spacing),
-                bodies->expected(link.owner)};
-      for (double& v : body.expected) v /= unit;
-      body.expected[2] /= spacing;
-      if (body.arm) *body.arm /= spacing;
-      touched_.push_back(body);
-    }
+    if (!bodies_->isFree(link.owner)) return;
     const Vec2 g(static_cast<double>(link.gradientX), static_cast<double>(link.gradientY));
-    const Vec2 arm = (Vec2(x[link.particle], y[link.particle]) - center) / spacing;
-    links_.push_back({link.particle, static_cast<std::uint32_t>(index), g.x(), g.y(), cross(arm, g)});
+    const Vec2 arm = (Vec2(x[link.particle], y[link.particle]) - bodies_->center(link.owner)) / units_.spacing;
+    const auto body = static_cast<std::uint32_t>(indexOf_[static_cast<std::size_t>(link.owner)]);
+    moving_[body].touched = true;
+    links_.push_back({link.particle, body, g.x(), g.y(), cross(arm, g)});
   });
   if (!any()) return;
   lambda_.resize(x.size());
   std::copy_n(walls.lambda(), x.size(), lambda_.data());
 }
 
+void BodyResponse::add(int owner) {
+  indexOf_[static_cast<std::size_t>(owner)] = static_cast<std::int32_t>(moving_.size());
+  const MassData& data = bodies_->mass(owner);
+  const double dx = units_.spacing;
+  Body body{owner, bodies_->hingeArm(owner), data.mass / units_.mass, data.inertia / (units_.mass * dx * dx),
+            bodies_->expected(owner)};
+  for (double& v : body.expected) v /= units_.impulse;
+  body.expected[2] /= dx;
+  if (body.arm) *body.arm /= dx;
+  moving_.push_back(body);
+}
+
 void BodyResponse::holdBack(const float* diagonal) {
   for (const Link& l : links_) {
     const double w = 2.0 / static_cast<double>(std::max(diagonal[l.particle], kSmallestDiagonal));
-    std::array<double, 6>& k = touched_[l.body].hold;
+    std::array<double, 6>& k = moving_[l.body].hold;
     k[0] += w * l.x * l.x, k[1] += w * l.x * l.y, k[2] += w * l.y * l.y;
     k[3] += w * l.x * l.moment, k[4] += w * l.y * l.moment, k[5] += w * l.moment * l.moment;
   }
 }
 
 void BodyResponse::sumImpulses(const float* kappa) {
-  sums_.assign(touched_.size(), {0.0, 0.0, 0.0});
+  sums_.assign(moving_.size(), {0.0, 0.0, 0.0});
   for (const Link& l : links_) {
     const double twice = 2.0 * static_cast<double>(kappa[l.particle]);
     Wrench& sum = sums_[l.body];
@@ -81,10 +88,10 @@ void BodyResponse::step(Body& body, const Wrench& impulse) {
 void BodyResponse::follow(const float* kappa, const WallLayer& walls) {
   if (!any()) return;
   sumImpulses(kappa);
-  for (std::size_t b = 0; b < touched_.size(); ++b) step(touched_[b], sums_[b]);
+  for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b]);
   for (const Link& l : links_) lambda_[l.particle] = walls.lambda()[l.particle];
   for (const Link& l : links_) {
-    const Wrench& q = touched_[l.body].moved;
+    const Wrench& q = moving_[l.body].moved;
     lambda_[l.particle] -= static_cast<float>(l.x * q[0] + l.y * q[1] + l.moment * q[2]);
   }
 }
@@ -92,18 +99,13 @@ void BodyResponse::follow(const float* kappa, const WallLayer& walls) {
 void BodyResponse::settle(const float* kappa) {
   if (bodies_ == nullptr) return;
   sumImpulses(kappa);
-  for (int owner = 0; owner < static_cast<int>(bodies_->count()); ++owner) {
-    if (!bodies_->isFree(owner)) continue;
-    const std::int32_t index = indexOf_[static_cast<std::size_t>(owner)];
-    if (index < 0) {
-      bodies_->release(owner);
-      continue;
-    }
-    const auto at = static_cast<std::size_t>(index);
-    const Wrench& sum = sums_[at];
-    const Wrench& q = touched_[at].moved;
-    bodies_->push(owner, {unit_ * sum[0], unit_ * sum[1], unit_ * spacing_ * sum[2]},
-                  {spacing_ * q[0], spacing_ * q[1], q[2]});
+  const double dx = units_.spacing, unit = units_.impulse;
+  for (std::size_t b = 0; b < moving_.size(); ++b) {
+    Body& body = moving_[b];
+    const Wrench& sum = sums_[b];
+    if (!body.touched) step(body, sum);  // takes back what its motion had of a pressure that is no more
+    const Wrench& q = body.moved;
+    bodies_->push(body.owner, {unit * sum[0], unit * sum[1], unit * dx * sum[2]}, {dx * q[0], dx * q[1], q[2]});
   }
   bodies_->settle();
 }

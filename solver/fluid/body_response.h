@@ -17,10 +17,17 @@ namespace froude {
 /// centre of mass. All lengths in spacings dx; masses in particles' masses.
 class BodyResponse {
  public:
-  /// Takes the links of `walls` to free bodies, at the start of a pressure solve. `unit` [kg·m/s]: the impulse of a
-  /// displacement by dx of one particle, mass·dx/dt. Bodies without links stay where they are expected to be.
-  void begin(FreeBodies* bodies, const WallLayer& walls, std::span<const double> x, std::span<const double> y,
-             double spacing, double mass, double unit);
+  /// What lengths, masses and impulses are divided by.
+  struct Units {
+    double spacing;  // dx [m]
+    double mass;     // of a particle [kg/m]
+    double impulse;  // of a displacement by dx of one particle, mass·dx/dt [kg/s]
+  };
+  /// All free bodies, at the start of a pressure solve; null: there are none. Without links a body only loses, in
+  /// `settle`, what its motion had of a pressure.
+  void begin(FreeBodies* bodies, const Units& units);
+  /// The links of `walls` to them, of particles at x, y [m].
+  void link(const WallLayer& walls, std::span<const double> x, std::span<const double> y);
   bool any() const { return !links_.empty(); }
 
   /// After the diagonal of the pressure system is known: what holds the bodies back.
@@ -29,13 +36,14 @@ class BodyResponse {
   void follow(const float* kappa, const WallLayer& walls);
   /// λ by particle; the walls' own where no body has moved.
   const float* lambda() const { return lambda_.data(); }
-  /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left.
+  /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left. κ may be
+  /// null where there are no links.
   void settle(const float* kappa);
 
  private:
   struct Link {
     std::uint32_t particle;
-    std::uint32_t body;  // into bodies_
+    std::uint32_t body;  // into moving_
     double x, y, moment;
   };
   struct Body {
@@ -45,17 +53,19 @@ class BodyResponse {
     Wrench expected{0.0, 0.0, 0.0};  // impulse that its motion has already
     std::array<double, 6> hold{};    // K: xx, xy, yy, xm, ym, mm
     Wrench moved{0.0, 0.0, 0.0};     // q
+    bool touched = false;            // by any particle
   };
+  void add(int owner);
   void sumImpulses(const float* kappa);
   static void step(Body& body, const Wrench& impulse);
 
   FreeBodies* bodies_ = nullptr;
-  std::vector<Body> touched_;
+  std::vector<Body> moving_;
   std::vector<Link> links_;            // by particle
-  std::vector<std::int32_t> indexOf_;  // of each owner in touched_, −1
+  std::vector<std::int32_t> indexOf_;  // of each owner in moving_, −1
   std::vector<Wrench> sums_;
   AlignedArray<float> lambda_;
-  double spacing_ = 1.0, unit_ = 1.0;
+  Units units_{1.0, 1.0, 1.0};
 };
 
 }  // namespace froude

@@ -108,7 +108,8 @@ Pbf::PressureScale Pbf::pressureScale(const ParticlePool& pool) const {
 
 void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
   if (pool.empty()) {
-    if (context.freeBodies != nullptr) context.freeBodies->releaseAll();
+    bodies_.begin(context.freeBodies, bodyUnits(context.dt));
+    bodies_.settle(nullptr);
     return;
   }
   resizeScratch(pool.size());
@@ -206,8 +207,8 @@ void Pbf::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
-  bodies_.begin(context.freeBodies, walls_, {predictedX_.data(), n}, {predictedY_.data(), n}, dx_, particleMass(),
-                particleMass() * dx_ / context.dt);
+  bodies_.begin(context.freeBodies, bodyUnits(context.dt));
+  bodies_.link(walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
 }
 
 PairFrame Pbf::frame() const {

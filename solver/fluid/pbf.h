@@ -56,6 +56,7 @@ class Pbf final : public FluidModel {
     double largest, typical;
   };
   PressureScale pressureScale(const ParticlePool& pool) const;
+  BodyResponse::Units bodyUnits(double dt) const { return {dx_, particleMass(), particleMass() * dx_ / dt}; }
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
 
   FluidDef def_;

@@ -40,9 +40,7 @@ std::vector<ConvexShape> wallShapes(const DomainDef& domain) {
   return walls;
 }
 
-}  // namespace
-
-bool ContactList::mayTouch(const BodySet& bodies, std::uint32_t a, std::uint32_t b) const {
+bool mayTouch(const BodySet& bodies, std::uint32_t a, std::uint32_t b) {
   if (a == b) return false;
   const auto n = static_cast<std::uint32_t>(bodies.size());
   if (a == n || b == n) return bodies.isFree(a == n ? b : a);
@@ -51,6 +49,8 @@ bool ContactList::mayTouch(const BodySet& bodies, std::uint32_t a, std::uint32_t
   const BodyDef& db = bodies.definition(b);
   return CollisionFilter{da.group, da.collidesWith}.accepts(db.group, db.collidesWith);
 }
+
+}  // namespace
 
 void ContactList::rebuild(const DomainDef& domain, const BodySet& bodies) {
   std::vector<std::unique_ptr<Shape>> known = std::move(shapes_);
@@ -72,7 +72,6 @@ void ContactList::rebuild(const DomainDef& domain, const BodySet& bodies) {
   std::vector<std::uint64_t> keys;
   for (const Proxy& p : proxies_) keys.push_back(p.key);
   proxies_.clear();
-  firstProxy_.assign(1, 0);
   thickness_.clear();
   auto addPieces = [&](const Shape& shape, std::uint32_t body, std::uint64_t key) {
     double thin = kInfinity;
@@ -80,7 +79,6 @@ void ContactList::rebuild(const DomainDef& domain, const BodySet& bodies) {
       proxies_.push_back({&piece, body, key++});
       thin = std::min(thin, piece.innerRadius());
     }
-    firstProxy_.push_back(static_cast<std::uint32_t>(proxies_.size()));
     thickness_.push_back(thin);
   };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -253,42 +251,43 @@ void ContactList::update(const BodySet& bodies, const BodyPoses& poses, Crew& cr
   }
 }
 
-void ContactList::archive(Archive& a) {
-  // Pairs as numbers of proxies, which follow from the bodies; the rest value by value, as padding has no defined bits.
-  std::vector<std::uint32_t> whole;
-  std::vector<double> real;
-  const std::size_t n = a.count("contacts", contacts_.size());
-  if (a.loading()) contacts_.assign(n, {});
-  whole.reserve(7 * n);
-  real.reserve(12 * n);
+namespace {
+
+constexpr std::size_t kPairNumbers = 7, kPointNumbers = 12, kBoxNumbers = 4;
+
+}  // namespace
+
+// Value by value into plain arrays: padding has no defined bits.
+void ContactList::flatten() {
+  savedPairs_.clear();
+  savedPoints_.clear();
+  savedBoxes_.clear();
   for (const Contact& c : contacts_) {
     for (const std::uint32_t v : {c.a, c.b, c.cache.a, c.cache.b, c.count, c.points[0].id, c.points[1].id}) {
-      whole.push_back(v);
+      savedPairs_.push_back(v);
     }
     for (const ContactPoint& p : c.points) {
-      for (const double v : {p.at.x(), p.at.y(), p.separation, p.normalForce, p.tangentForce}) real.push_back(v);
+      for (const double v : {p.at.x(), p.at.y(), p.separation, p.normalForce, p.tangentForce}) {
+        savedPoints_.push_back(v);
+      }
     }
-    real.push_back(c.normal.x()), real.push_back(c.normal.y());
+    savedPoints_.push_back(c.normal.x()), savedPoints_.push_back(c.normal.y());
   }
-  a.bytes("pairs", whole.data(), sizeof(std::uint32_t), whole.size());
-  a.bytes("points", real.data(), sizeof(double), real.size());
-  std::vector<double> boxes;
   for (const Box& b : fat_) {
-    for (const double v : {b.min.x(), b.min.y(), b.max.x(), b.max.y()}) boxes.push_back(v);
+    for (const double v : {b.min.x(), b.min.y(), b.max.x(), b.max.y()}) savedBoxes_.push_back(v);
   }
-  a.bytes("boxes", boxes.data(), sizeof(double), boxes.size());
-  std::uint8_t stale = stale_ ? 1 : 0;
-  a.value("stale", stale);
-  if (!a.loading()) return;
-  stale_ = stale != 0;
-  for (std::size_t k = 0; k < n; ++k) {
+}
+
+void ContactList::restore() {
+  contacts_.resize(savedPairs_.size() / kPairNumbers);
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
     Contact& c = contacts_[k];
-    const std::uint32_t* w = whole.data() + 7 * k;
+    const std::uint32_t* w = savedPairs_.data() + kPairNumbers * k;
     if (w[0] >= proxies_.size() || w[1] >= proxies_.size()) throw Error("saved contacts: the state is damaged");
     c.a = w[0], c.b = w[1], c.cache.a = w[2], c.cache.b = w[3], c.count = w[4];
     c.points[0].id = w[5], c.points[1].id = w[6];
     c.bodyA = proxies_[c.a].body, c.bodyB = proxies_[c.b].body;
-    const double* r = real.data() + 12 * k;
+    const double* r = savedPoints_.data() + kPointNumbers * k;
     for (ContactPoint& p : c.points) {
       p.at = {r[0], r[1]}, p.separation = r[2], p.normalForce = r[3], p.tangentForce = r[4];
       r += 5;
@@ -296,10 +295,26 @@ void ContactList::archive(Archive& a) {
     c.normal = {r[0], r[1]};
   }
   for (std::size_t p = 0; p < fat_.size(); ++p) {
-    const double* b = boxes.data() + 4 * p;
+    const double* b = savedBoxes_.data() + kBoxNumbers * p;
     fat_[p] = {{b[0], b[1]}, {b[2], b[3]}};
   }
   order_.clear();
+}
+
+// Pairs are numbers of proxies, which follow from the bodies.
+void ContactList::archive(Archive& a) {
+  flatten();
+  const std::size_t n = a.count("contacts", contacts_.size());
+  savedPairs_.resize(kPairNumbers * n);
+  savedPoints_.resize(kPointNumbers * n);
+  a.bytes("pairs", savedPairs_.data(), sizeof(std::uint32_t), savedPairs_.size());
+  a.bytes("points", savedPoints_.data(), sizeof(double), savedPoints_.size());
+  a.bytes("boxes", savedBoxes_.data(), sizeof(double), savedBoxes_.size());
+  std::uint8_t stale = stale_ ? 1 : 0;
+  a.value("stale", stale);
+  if (!a.loading()) return;
+  stale_ = stale != 0;
+  restore();
 }
 
 }  // namespace froude

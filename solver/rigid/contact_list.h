@@ -70,18 +70,9 @@ class ContactList {
   /// Of the last `update`, in the order of the list: those with points, and those without.
   const std::vector<ContactRef>& touching() const { return touching_; }
   const std::vector<ContactRef>& apart() const { return apart_; }
-  const std::vector<Proxy>& proxies() const { return proxies_; }
   const ConvexShape& shape(std::uint32_t proxy) const { return *proxies_[proxy].shape; }
   /// Smallest inner radius of a body's pieces [m].
   double thickness(std::size_t body) const { return thickness_[body]; }
-  /// visit(proxy) for each piece of a body.
-  template <typename Visit>
-  void forEachPiece(std::size_t body, Visit&& visit) const {
-    for (std::uint32_t p = firstProxy_[body]; p < firstProxy_[body + 1]; ++p) visit(p);
-  }
-  /// Box of a piece over the step, with all of its travel [m].
-  const Box& reach(std::uint32_t proxy) const { return reach_[proxy]; }
-  bool mayTouch(const BodySet& bodies, std::uint32_t bodyA, std::uint32_t bodyB) const;
 
   /// Pairs, their memory and the boxes that they were found with.
   void archive(Archive& a);
@@ -98,13 +89,14 @@ class ContactList {
   void sortByKey();
   void sortAlongX();
   void collide(Contact& contact, const BodyPoses& poses) const;
+  void flatten();
+  void restore();
 
   std::vector<std::unique_ptr<Shape>> shapes_;
   std::unique_ptr<Shape> walls_;
   std::vector<Proxy> proxies_;
-  std::vector<std::uint32_t> firstProxy_;  // by body, and the end
   std::vector<double> thickness_;
-  std::vector<Box> reach_, fat_;  // by proxy
+  std::vector<Box> reach_, fat_;  // by proxy: over the step with all of its travel, and for some steps [m]
   std::vector<Contact> contacts_, before_;
   std::vector<ContactRef> touching_, apart_;
   std::vector<std::uint32_t> order_;         // proxies along x
@@ -112,7 +104,9 @@ class ContactList {
   std::vector<Box> sorted_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  // ranks
   std::vector<std::uint32_t> start_, partner_;
-  bool stale_ = true;  // boxes are to be made anew
+  bool stale_ = true;                      // boxes are to be made anew
+  std::vector<std::uint32_t> savedPairs_;  // work space of archive
+  std::vector<double> savedPoints_, savedBoxes_;
 };
 
 }  // namespace froude

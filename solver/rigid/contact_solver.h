@@ -55,7 +55,6 @@ class ContactSolver {
   /// body).
   ContactTotals finish(const std::vector<SolverBody>& bodies, ContactList& list,
                        std::vector<std::array<double, 3>>& onBody, Crew& crew);
-  std::size_t size() const { return constraints_.size(); }
 
  private:
   struct Point {

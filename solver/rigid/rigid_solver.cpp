@@ -71,41 +71,16 @@ void RigidSolver::findPoses(const RigidStep& step, const BodySet& bodies, Crew& 
   });
 }
 
-std::uint32_t RigidSolver::rootOf(std::uint32_t body) {
-  while (parent_[body] != body) {
-    parent_[body] = parent_[parent_[body]];
-    body = parent_[body];
-  }
-  return body;
-}
-
-// Whoever touches one that is awake, or something that is driven, is awake with all that it touches. The smaller number
-// is the root, so that islands do not depend on the order.
-void RigidSolver::wakeIslands(BodySet& bodies, RigidStats& stats) {
-  const std::size_t n = bodies.size();
-  parent_.resize(n + 1);
-  for (std::uint32_t i = 0; i <= n; ++i) parent_[i] = i;
-  std::vector<std::uint8_t>& mayRest = islandMayRest_;
-  for (const ContactRef& c : list_.touching()) {
-    if (free_[c.bodyA] == 0 || free_[c.bodyB] == 0) continue;
-    const std::uint32_t a = rootOf(c.bodyA), b = rootOf(c.bodyB);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-  mayRest.assign(n + 1, 1);
+// Whoever touches one that is awake, or something that is driven, is awake with all that it touches.
+void RigidSolver::wakeIslands(BodySet& bodies) {
+  islands_.join(list_.touching(), free_);
+  const auto n = static_cast<std::uint32_t>(bodies.size());
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (awake_[i] != 0) mayRest[rootOf(i)] = 0;
+    if (awake_[i] != 0) islands_.stir(i);
   }
-  for (const ContactRef& c : list_.touching()) {
-    auto stirs = [&](std::uint32_t body, std::uint32_t other) {
-      if (free_[body] == 0 && poses_.still[body] == 0) mayRest[rootOf(other)] = 0;
-    };
-    stirs(c.bodyA, c.bodyB);
-    stirs(c.bodyB, c.bodyA);
-  }
+  islands_.stirByDriven(list_.touching(), free_, poses_.still);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (free_[i] == 0) continue;
-    stats.islands += rootOf(i) == i && mayRest[i] == 0;
-    if (awake_[i] != 0 || mayRest[rootOf(i)] != 0) continue;
+    if (free_[i] == 0 || awake_[i] != 0 || islands_.rests(i)) continue;
     awake_[i] = 1;
     bodies.wake(i);
   }
@@ -340,8 +315,8 @@ bool RigidSolver::stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& cr
 
 // An island sleeps when all of it has hardly moved for a while.
 void RigidSolver::fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats) {
-  const std::size_t n = bodies.size();
-  islandMayRest_.assign(n + 1, 1);
+  const auto n = static_cast<std::uint32_t>(bodies.size());
+  islands_.calm();
   for (std::uint32_t i = 0; i < n; ++i) {
     if (awake_[i] == 0) continue;
     FreeState& f = bodies.freeState(i);
@@ -350,17 +325,11 @@ void RigidSolver::fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats&
     const bool pushed = f.pressure.squaredNorm() > 0.0 || driven;
     const bool still = speed < kStillSpeed * std::sqrt(step.gravityScale * bodies.radius(i)) && !pushed;
     f.stillFor = still ? f.stillFor + step.dt : 0.0;
-    if (f.stillFor < kStillTime) islandMayRest_[rootOf(i)] = 0;
+    if (f.stillFor < kStillTime) islands_.stir(i);
   }
-  for (const ContactRef& c : list_.touching()) {
-    auto stirs = [&](std::uint32_t body, std::uint32_t other) {
-      if (free_[body] == 0 && poses_.still[body] == 0) islandMayRest_[rootOf(other)] = 0;
-    };
-    stirs(c.bodyA, c.bodyB);
-    stirs(c.bodyB, c.bodyA);
-  }
+  islands_.stirByDriven(list_.touching(), free_, poses_.still);
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (awake_[i] == 0 || islandMayRest_[rootOf(i)] == 0) continue;
+    if (awake_[i] == 0 || !islands_.rests(i)) continue;
     FreeState& f = bodies.freeState(i);
     stats.impulse -= bodies.mass(i).mass * f.velocity;
     f.asleep = 1.0;
@@ -377,7 +346,7 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
   Crew::run(list_.contacts().size() >= kCrewFrom, [&](Crew& crew) {
     findPoses(step, bodies, crew);
     list_.update(bodies, poses_, crew);
-    wakeIslands(bodies, stats);
+    wakeIslands(bodies);
     loadBodies(bodies, crew);
     findFlying(bodies);
     solver_.prepare(list_, bodies, poses_, awake_, {h, step.dt, step.gravityScale}, crew);
@@ -401,8 +370,6 @@ void RigidSolver::advance(const RigidStep& step, BodySet& bodies, RigidStats& st
     stopAtImpacts(step, bodies, crew);
   });
   fallAsleep(step, bodies, stats);
-  stats.contacts = solver_.size();
-  for (const std::uint8_t a : awake_) stats.awake += a;
 }
 
 double RigidSolver::travelTime(const BodySet& bodies) const {

@@ -6,6 +6,7 @@
 #include <froude/base/parallel.h>
 #include <froude/solver/rigid/contact_list.h>
 #include <froude/solver/rigid/contact_solver.h>
+#include <froude/solver/rigid/islands.h>
 
 namespace froude {
 
@@ -16,12 +17,11 @@ struct RigidStep {
   double gravityScale = 0.0;  // largest |g| [m/s²]
 };
 
-/// What a step gave to the free bodies from outside, and found.
+/// What a step gave to the free bodies from outside.
 struct RigidStats {
   Vec2 impulse{0, 0};        // of gravity, walls, fixed and scripted bodies, hinges [kg·m/s per metre]
   double work = 0.0;         // of scripted bodies, belts and motors [J/m]
   double gravityWork = 0.0;  // [J/m]
-  std::size_t contacts = 0, awake = 0, islands = 0;
 };
 
 /// What a body felt of contacts and hinge over the last step.
@@ -46,15 +46,13 @@ class RigidSolver {
   /// Of the last step, by body; not saved.
   const BodyImpulse& felt(std::size_t body) const { return felt_[body]; }
 
-  /// Contacts that have points now.
-  const ContactList& contacts() const { return list_; }
   /// Everything on which the future depends besides the bodies.
   void archive(const BodySet& bodies, Archive& a);
 
  private:
   void admitBodies(const BodySet& bodies);
   void findPoses(const RigidStep& step, const BodySet& bodies, Crew& crew);
-  void wakeIslands(BodySet& bodies, RigidStats& stats);
+  void wakeIslands(BodySet& bodies);
   void findFlying(const BodySet& bodies);
   Vec2 accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t body) const;
   void loadBodies(const BodySet& bodies, Crew& crew);
@@ -68,17 +66,17 @@ class RigidSolver {
   void findFastPairs(const RigidStep& step, const BodySet& bodies);
   bool stopFastPairs(const RigidStep& step, BodySet& bodies, Crew& crew);
   void fallAsleep(const RigidStep& step, BodySet& bodies, RigidStats& stats);
-  std::uint32_t rootOf(std::uint32_t body);
 
   DomainDef domain_;
   ContactList list_;
+  Islands islands_;
   ContactSolver solver_;
   BodyPoses poses_;
   std::vector<SolverBody> bodies_;
   std::vector<std::uint8_t> free_, isHinged_;  // by body: of the definitions, which are far apart in memory
   std::vector<std::uint8_t> awake_, flies_;
   std::vector<std::array<double, 3>> gravityOf_;  // by block of bodies: impulse x, y, work
-  std::vector<std::uint32_t> parent_, hinged_;
+  std::vector<std::uint32_t> hinged_;
   std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
   std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment
   std::vector<BodyImpulse> felt_;
@@ -87,9 +85,8 @@ class RigidSolver {
     double time;  // of impact [s]
   };
   std::vector<FastPair> fastPairs_;
-  std::vector<double> impact_;  // the first, by body [s]
-  std::vector<double> travel_;  // by body, at most [m]
-  std::vector<std::uint8_t> islandMayRest_;
+  std::vector<double> impact_;                 // the first, by body [s]
+  std::vector<double> travel_;                 // by body, at most [m]
   std::uint64_t version_ = ~std::uint64_t{0};  // of the bodies that the list was built from
 };
 
