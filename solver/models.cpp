@@ -2,6 +2,7 @@
 #include <array>
 
 #include <froude/base/error.h>
+#include <froude/solver/fluid/dfsph.h>
 #include <froude/solver/fluid/pbf.h>
 #include <froude/solver/model_card.h>
 #include <froude/solver/world.h>
@@ -64,7 +65,8 @@ const ModelCard* findModelCard(std::string_view name) {
 
 std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool) {
   if (def.model == "pbf") return std::make_unique<Pbf>(def, domain, pool);
-  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf");
+  if (def.model == "dfsph") return std::make_unique<Dfsph>(def, domain, pool);
+  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf, dfsph");
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {

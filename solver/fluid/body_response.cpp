@@ -28,9 +28,13 @@ void BodyResponse::link(const WallLayer& walls, std::span<const double> x, std::
     moving_[body].touched = true;
     links_.push_back({link.particle, body, g.x(), g.y(), cross(arm, g)});
   });
+}
+
+void BodyResponse::startFrom(std::span<const float> field) {
+  field_ = field.data();
   if (!any()) return;
-  lambda_.resize(x.size());
-  std::copy_n(walls.lambda(), x.size(), lambda_.data());
+  answered_.resize(field.size());
+  std::copy_n(field.data(), field.size(), answered_.data());
 }
 
 void BodyResponse::add(int owner) {
@@ -85,14 +89,14 @@ void BodyResponse::step(Body& body, const Wrench& impulse) {
   for (int i = 0; i < 3; ++i) body.moved[static_cast<std::size_t>(i)] += change[i];
 }
 
-void BodyResponse::follow(const float* kappa, const WallLayer& walls) {
+void BodyResponse::follow(const float* kappa) {
   if (!any()) return;
   sumImpulses(kappa);
   for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b]);
-  for (const Link& l : links_) lambda_[l.particle] = walls.lambda()[l.particle];
+  for (const Link& l : links_) answered_[l.particle] = field_[l.particle];
   for (const Link& l : links_) {
     const Wrench& q = moving_[l.body].moved;
-    lambda_[l.particle] -= static_cast<float>(l.x * q[0] + l.y * q[1] + l.moment * q[2]);
+    answered_[l.particle] -= static_cast<float>(l.x * q[0] + l.y * q[1] + l.moment * q[2]);
   }
 }
 

@@ -32,10 +32,13 @@ class BodyResponse {
 
   /// After the diagonal of the pressure system is known: what holds the bodies back.
   void holdBack(const float* diagonal);
-  /// One step towards where the pressures κ bring the bodies; writes the walls' λ as the fluid now sees it.
-  void follow(const float* kappa, const WallLayer& walls);
-  /// λ by particle; the walls' own where no body has moved.
-  const float* lambda() const { return lambda_.data(); }
+  /// What the particles see of the walls while no body has moved by the pressures: their λ, or what these gain. Must
+  /// stay where it is.
+  void startFrom(std::span<const float> field);
+  /// One step towards where the pressures κ bring the bodies; writes the field as the fluid now sees it.
+  void follow(const float* kappa);
+  /// The field by particle.
+  const float* answered() const { return any() ? answered_.data() : field_; }
   /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left. κ may be
   /// null where there are no links.
   void settle(const float* kappa);
@@ -64,7 +67,8 @@ class BodyResponse {
   std::vector<Link> links_;            // by particle
   std::vector<std::int32_t> indexOf_;  // of each owner in moving_, −1
   std::vector<Wrench> sums_;
-  AlignedArray<float> lambda_;
+  const float* field_ = nullptr;
+  AlignedArray<float> answered_;
   Units units_{1.0, 1.0, 1.0};
 };
 

@@ -46,7 +46,7 @@ struct PairFrame {
   HiddenPairs hidden;
 };
 
-/// One Jacobi sweep in the wake of the densities: change = max(−κ, relaxation·(density − target)/diagonal), the paper's
+/// One Jacobi sweep in the wake of the densities: change = max(least − κ, relaxation·(density − target)/diagonal), the paper's
 /// λ (eq. 11) as a correction of what is there already. A target of 0 marks a particle that is new: what it finds, at
 /// least the rest density, is what it may keep. An over-dense start is thus no push.
 struct PressureUpdate {
@@ -55,6 +55,7 @@ struct PressureUpdate {
   const float* kappa = nullptr;
   float* change = nullptr;
   float relaxation = 0.0f;
+  const float* least = nullptr;  // κ may not fall below; null: 0
 };
 
 /// Density at the present coordinates: density = Σ W + λ + g·s, s the displacement since the walls were integrated.
@@ -67,6 +68,39 @@ struct DensityLoop {
   const float* shiftY = nullptr;
   float* density = nullptr;
   float* diagonal = nullptr;  // may be null
+  PressureUpdate update{};
+};
+
+/// A symmetric matrix for each particle, by components.
+template <typename T>
+struct Matrices {
+  T* xx = nullptr;
+  T* xy = nullptr;
+  T* yy = nullptr;
+};
+
+/// Density as above without displacement, and what the arrangement makes of gradients: moment = −Σ r ⊗ ∇W (the unit
+/// matrix in a continuum), |S + g|², and Σ|∇W|².
+struct MomentLoop {
+  const float* lambda = nullptr;  // null: no walls near any particle
+  const float* wallX = nullptr;
+  const float* wallY = nullptr;
+  float* density = nullptr;
+  float* skewX = nullptr;  // S
+  float* skewY = nullptr;
+  float* squares = nullptr;
+  Matrices<float> moment;
+};
+
+/// What displacements u add to the densities, to first order: Σ (uᵢ − uⱼ)·Bᵢ∇W + u·g + λ', λ' what the walls' own motion
+/// adds to λ. The excess of a particle whose κ may be negative counts either way.
+struct DivergenceLoop {
+  const float* ux = nullptr;  // [dx]
+  const float* uy = nullptr;
+  Matrices<const float> correction;  // B
+  const float* wallX = nullptr;  // null: no walls near any particle
+  const float* wallY = nullptr;
+  const float* wallGain = nullptr;  // λ'
   PressureUpdate update{};
 };
 
@@ -94,6 +128,23 @@ struct ViscosityLoop {
   float* changeY = nullptr;
 };
 
+/// Displacement by a pressure with corrected gradients: s −= Σ (κᵢBᵢ + κⱼBⱼ)∇W + 2κᵢ g; the adjoint of the divergence
+/// but for the walls, as above.
+struct PushLoop {
+  const float* pressure = nullptr;  // κ
+  Matrices<const float> scaled;     // κB
+  const float* skewX = nullptr;     // S
+  const float* skewY = nullptr;
+  const float* wallX = nullptr;  // null: no walls
+  const float* wallY = nullptr;
+  const float* tangent = nullptr;
+  float* shiftX = nullptr;  // in and out
+  float* shiftY = nullptr;
+  float* totalX = nullptr;  // in and out, as shift
+  float* totalY = nullptr;
+  float* kappa = nullptr;  // where not null, `pressure` is added to it
+};
+
 /// Fills `runs`, one for each of `cells`. Reuses the memory.
 void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, const HiddenPairs& hidden,
                   AlignedArray<CellRuns>& runs);
@@ -102,6 +153,10 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
 struct PairLoops {
   /// Returns Σ max(0, density − target) where pressures are updated.
   double (*density)(const PairFrame&, const DensityLoop&, std::size_t begin, std::size_t end);
+  /// As `density`.
+  double (*divergence)(const PairFrame&, const DivergenceLoop&, std::size_t begin, std::size_t end);
+  void (*moments)(const PairFrame&, const MomentLoop&, std::size_t begin, std::size_t end);
+  void (*push)(const PairFrame&, const PushLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
 };

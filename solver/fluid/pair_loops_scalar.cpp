@@ -46,6 +46,15 @@ void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end,
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
 constexpr auto kTail = static_cast<float>(kernel::kTail);
 
+// Returns what the gain adds to the excess.
+double updatePressure(const PressureUpdate& update, std::uint32_t i, float density, float diagonal) {
+  const float gain = density - update.target[i];
+  const float least = update.least != nullptr ? update.least[i] : 0.0f;
+  const float step = update.relaxation * gain / std::max(diagonal, kSmallestDiagonal);
+  update.change[i] = std::max(least - update.kappa[i], step);
+  return static_cast<double>(std::max(gain, least < 0.0f ? -gain : 0.0f));
+}
+
 double density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   double excess = 0.0;
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
@@ -72,12 +81,79 @@ double density(const PairFrame& frame, const DensityLoop& loop, std::size_t begi
     const PressureUpdate& update = loop.update;
     if (update.target == nullptr) return;
     if (update.target[i] == 0.0f) update.target[i] = std::max(loop.density[i], 1.0f);
-    const float gain = loop.density[i] - update.target[i];
     const float diagonal = update.diagonal != nullptr ? update.diagonal[i] : loop.diagonal[i];
-    update.change[i] = std::max(-update.kappa[i], update.relaxation * gain / std::max(diagonal, kSmallestDiagonal));
-    excess += static_cast<double>(std::max(gain, 0.0f));
+    excess += updatePressure(update, i, loop.density[i], diagonal);
   });
   return excess;
+}
+
+double divergence(const PairFrame& frame, const DivergenceLoop& loop, std::size_t begin, std::size_t end) {
+  double excess = 0.0;
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sum = 0.0f;
+    const float ux = loop.ux[i], uy = loop.uy[i];
+    const float xx = loop.correction.xx[i], xy = loop.correction.xy[i], yy = loop.correction.yy[i];
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
+      const float m3 = m * m * m;
+      const float away = (ux - loop.ux[j]) * (xx * dx + xy * dy) + (uy - loop.uy[j]) * (xy * dx + yy * dy);
+      sum += m3 * (1.0f + 2.5f * kTail * (m3 * m3)) * away;
+    });
+    float gain = -2.0f * kNorm * sum;
+    if (loop.wallX != nullptr) gain += loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallGain[i];
+    excess += updatePressure(loop.update, i, gain, loop.update.diagonal[i]);
+  });
+  return excess;
+}
+
+void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sum = 0.0f, sx = 0.0f, sy = 0.0f, squares = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
+    forEachPair(frame, cell, i, [&](std::uint32_t, float dx, float dy, float m) {
+      const float m3 = m * m * m;
+      sum += m3 * m * (1.0f + kTail * (m3 * m3));
+      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
+      sx += f * dx;
+      sy += f * dy;
+      xx += f * dx * dx;
+      xy += f * dx * dy;
+      yy += f * dy * dy;
+      squares += f * f * (dx * dx + dy * dy);
+    });
+    loop.density[i] = kNorm * sum + (loop.lambda != nullptr ? loop.lambda[i] : 0.0f);
+    loop.skewX[i] = -2.0f * kNorm * sx;
+    loop.skewY[i] = -2.0f * kNorm * sy;
+    loop.squares[i] = 4.0f * kNorm * kNorm * squares;
+    loop.moment.xx[i] = 2.0f * kNorm * xx;
+    loop.moment.xy[i] = 2.0f * kNorm * xy;
+    loop.moment.yy[i] = 2.0f * kNorm * yy;
+  });
+}
+
+void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sx = 0.0f, sy = 0.0f;
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
+      const float m3 = m * m * m;
+      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
+      sx += f * (loop.scaled.xx[j] * dx + loop.scaled.xy[j] * dy);
+      sy += f * (loop.scaled.xy[j] * dx + loop.scaled.yy[j] * dy);
+    });
+    const float qx = loop.skewX[i], qy = loop.skewY[i];
+    float moveX = 2.0f * kNorm * sx - (loop.scaled.xx[i] * qx + loop.scaled.xy[i] * qy);
+    float moveY = 2.0f * kNorm * sy - (loop.scaled.xy[i] * qx + loop.scaled.yy[i] * qy);
+    const float own = loop.pressure[i];
+    if (loop.wallX != nullptr) {
+      const float gx = loop.wallX[i], gy = loop.wallY[i];
+      const float along = loop.tangent[i] * (gx * moveY - gy * moveX);
+      moveX -= 2.0f * own * gx + along * gy;
+      moveY -= 2.0f * own * gy - along * gx;
+    }
+    loop.shiftX[i] += moveX;
+    loop.shiftY[i] += moveY;
+    loop.totalX[i] += moveX;
+    loop.totalY[i] += moveY;
+    if (loop.kappa != nullptr) loop.kappa[i] += own;
+  });
 }
 
 void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t begin, std::size_t end) {
@@ -150,7 +226,7 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
 }
 
 const PairLoops& scalarPairLoops() {
-  static constexpr PairLoops kLoops{density, displace, viscosity};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity};
   return kLoops;
 }
 

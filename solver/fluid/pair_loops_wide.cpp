@@ -211,9 +211,9 @@ HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uin
 
 // The particles of cells [begin, end). For each, add(m, dx, dy, own, other, sums) over vectors of candidates: dx, dy in
 // half spacings from candidate to particle, m = max(0, 1 − q²/4), 0 in lanes without a visible neighbour, own and other
-// the kValues values of particle and candidates. Then finish(i, count, sums) with the kSums sums of up to kLanes
+// the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums of up to kLanes
 // particles from i on, one a lane.
-template <int kSums, int kValues, typename Add, typename Finish>
+template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
 HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
                            const Add& add, const Finish& finish) {
   const F f;
@@ -239,14 +239,14 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
     filled = 0;
   };
   auto begun = [&](std::uint32_t i, VF* own, VF* sums) FROUDE_INLINE {
-    for (int a = 0; a < kValues; ++a) own[a] = hn::Set(f, values[a][i]);
+    for (int a = 0; a < kValues + kOwn; ++a) own[a] = hn::Set(f, values[a][i]);
     for (int s = 0; s < kSums; ++s) sums[s] = hn::Zero(f);
   };
   auto done = [&](std::uint32_t i, const VF* sums) FROUDE_INLINE {
     for (int s = 0; s < kSums; ++s) hn::Store(sums[s], f, rows[s][filled]);
     if (++filled == kRows) finishRows(i + 1);
   };
-  VF own[kValues + 1], other[kValues + 1], sums[kSums];
+  VF own[kValues + kOwn + 1], other[kValues + 1], sums[kSums];
   auto sweepUsual = [&](const CellRuns& cell, const UsualCell<kValues>& c, const std::uint32_t vectors) FROUDE_INLINE {
     const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
     for (std::uint32_t i = cell.first; i < cell.last; ++i) {
@@ -290,7 +290,18 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
   }
 }
 
-// Σ max(0, gain) goes to `excess`.
+// The change of κ for a gain of density, whose share of the excess goes to `excess`.
+HWY_INLINE void changePressure(const PressureUpdate& update, std::uint32_t i, std::uint32_t count, VF gain, VF diagonal,
+                               VF& excess) {
+  const F f;
+  const VF least = update.least != nullptr ? loadSome(update.least + i, count) : hn::Zero(f);
+  const VF step =
+      hn::Div(hn::Mul(hn::Set(f, update.relaxation), gain), hn::Max(diagonal, hn::Set(f, kSmallestDiagonal)));
+  storeSome(hn::Max(hn::Sub(least, loadSome(update.kappa + i, count)), step), update.change + i, count);
+  const VF lack = hn::IfThenElseZero(hn::Lt(least, hn::Zero(f)), hn::Neg(gain));
+  excess = hn::Add(excess, hn::IfThenElseZero(hn::FirstN(f, count), hn::Max(gain, lack)));
+}
+
 HWY_INLINE void updatePressure(const PressureUpdate& update, std::uint32_t i, std::uint32_t count, VF density,
                                VF diagonal, VF& excess) {
   const F f;
@@ -300,11 +311,7 @@ HWY_INLINE void updatePressure(const PressureUpdate& update, std::uint32_t i, st
     target = hn::IfThenElse(fresh, hn::Max(density, hn::Set(f, 1.0f)), target);
     storeSome(target, update.target + i, count);
   }
-  const VF gain = hn::Sub(density, target);
-  const VF step =
-      hn::Div(hn::Mul(hn::Set(f, update.relaxation), gain), hn::Max(diagonal, hn::Set(f, kSmallestDiagonal)));
-  storeSome(hn::Max(hn::Neg(loadSome(update.kappa + i, count)), step), update.change + i, count);
-  excess = hn::Add(excess, hn::IfThenElseZero(hn::FirstN(f, count), hn::Max(gain, hn::Zero(f))));
+  changePressure(update, i, count, hn::Sub(density, target), diagonal, excess);
 }
 
 struct Wall {
@@ -360,9 +367,10 @@ double densityAndDiagonal(const PairFrame& frame, const DensityLoop& loop, std::
         storeSome(density, loop.density + i, count);
         const VF scale = hn::Set(f, -4.0f * kNorm), two = hn::Set(f, 2.0f);
         const VF px = hn::Mul(scale, sums[1]), py = hn::Mul(scale, sums[2]);
+        const VF skewX = hn::Add(px, wall.x), skewY = hn::Add(py, wall.y);
         VF diagonal = hn::Mul(hn::Mul(scale, scale), sums[3]);
-        diagonal = hn::MulAdd(hn::Add(px, wall.x), hn::MulAdd(two, wall.x, px), diagonal);
-        diagonal = hn::MulAdd(hn::Add(py, wall.y), hn::MulAdd(two, wall.y, py), diagonal);
+        diagonal = hn::MulAdd(skewX, hn::MulAdd(two, wall.x, px), diagonal);
+        diagonal = hn::MulAdd(skewY, hn::MulAdd(two, wall.y, py), diagonal);
         storeSome(diagonal, loop.diagonal + i, count);
         if (loop.update.target != nullptr) updatePressure(loop.update, i, count, density, diagonal, excess);
       });
@@ -371,6 +379,95 @@ double densityAndDiagonal(const PairFrame& frame, const DensityLoop& loop, std::
 
 double density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   return loop.diagonal != nullptr ? densityAndDiagonal(frame, loop, begin, end) : densityOnly(frame, loop, begin, end);
+}
+
+double divergence(const PairFrame& frame, const DivergenceLoop& loop, std::size_t begin, std::size_t end) {
+  const F f;
+  VF excess = hn::Zero(f);
+  const Matrices<const float>& b = loop.correction;
+  const float* const values[5] = {loop.ux, loop.uy, b.xx, b.xy, b.yy};
+  sweepCells<1, 2, 3>(
+      frame, begin, end, values,
+      [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
+        const VF px = hn::MulAdd(own[2], dx, hn::Mul(own[3], dy)), py = hn::MulAdd(own[3], dx, hn::Mul(own[4], dy));
+        const VF away = hn::MulAdd(hn::Sub(own[0], other[0]), px, hn::Mul(hn::Sub(own[1], other[1]), py));
+        sums[0] = hn::MulAdd(slopeOf(hn::Mul(m, hn::Mul(m, m))), away, sums[0]);
+      },
+      [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
+        VF gain = hn::Mul(hn::Set(f, -4.0f * kNorm), sums[0]);
+        if (loop.wallX != nullptr) {
+          gain = hn::MulAdd(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count), gain);
+          gain = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), gain);
+          gain = hn::Add(gain, loadSome(loop.wallGain + i, count));
+        }
+        gain = hn::Sub(gain, loadSome(loop.update.target + i, count));
+        changePressure(loop.update, i, count, gain, loadSome(loop.update.diagonal + i, count), excess);
+      });
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess)));
+}
+
+void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+  const F f;
+  sweepCells<7, 0>(
+      frame, begin, end, nullptr,
+      [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
+        const VF m3 = hn::Mul(m, hn::Mul(m, m));
+        sums[0] = hn::Add(sums[0], shapeOf(m, m3));
+        const VF slope = slopeOf(m3);
+        const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
+        sums[1] = hn::Add(sums[1], px);
+        sums[2] = hn::Add(sums[2], py);
+        sums[3] = hn::MulAdd(px, px, hn::MulAdd(py, py, sums[3]));
+        sums[4] = hn::MulAdd(px, dx, sums[4]);
+        sums[5] = hn::MulAdd(px, dy, sums[5]);
+        sums[6] = hn::MulAdd(py, dy, sums[6]);
+      },
+      [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
+        VF density = hn::Mul(hn::Set(f, kNorm), sums[0]);
+        if (loop.lambda != nullptr) density = hn::Add(density, loadSome(loop.lambda + i, count));
+        storeSome(density, loop.density + i, count);
+        const VF scale = hn::Set(f, -4.0f * kNorm), second = hn::Set(f, 8.0f * kNorm);
+        storeSome(hn::Mul(scale, sums[1]), loop.skewX + i, count);
+        storeSome(hn::Mul(scale, sums[2]), loop.skewY + i, count);
+        storeSome(hn::Mul(hn::Mul(scale, scale), sums[3]), loop.squares + i, count);
+        storeSome(hn::Mul(second, sums[4]), loop.moment.xx + i, count);
+        storeSome(hn::Mul(second, sums[5]), loop.moment.xy + i, count);
+        storeSome(hn::Mul(second, sums[6]), loop.moment.yy + i, count);
+      });
+}
+
+void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::size_t end) {
+  const F f;
+  const float* const values[3] = {loop.scaled.xx, loop.scaled.xy, loop.scaled.yy};
+  sweepCells<2, 3>(
+      frame, begin, end, values,
+      [&](VF m, VF dx, VF dy, const VF*, const VF* other, VF* sums) FROUDE_INLINE {
+        const VF slope = slopeOf(hn::Mul(m, hn::Mul(m, m)));
+        const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
+        sums[0] = hn::MulAdd(other[0], px, hn::MulAdd(other[1], py, sums[0]));
+        sums[1] = hn::MulAdd(other[1], px, hn::MulAdd(other[2], py, sums[1]));
+      },
+      [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
+        const VF qx = loadSome(loop.skewX + i, count), qy = loadSome(loop.skewY + i, count);
+        const VF xx = loadSome(loop.scaled.xx + i, count), xy = loadSome(loop.scaled.xy + i, count);
+        const VF yy = loadSome(loop.scaled.yy + i, count), scale = hn::Set(f, 4.0f * kNorm);
+        VF moveX = hn::NegMulAdd(xx, qx, hn::NegMulAdd(xy, qy, hn::Mul(scale, sums[0])));
+        VF moveY = hn::NegMulAdd(xy, qx, hn::NegMulAdd(yy, qy, hn::Mul(scale, sums[1])));
+        const VF own = loadSome(loop.pressure + i, count);
+        if (loop.wallX != nullptr) {
+          const VF gx = loadSome(loop.wallX + i, count), gy = loadSome(loop.wallY + i, count);
+          const VF tangent = loadSome(loop.tangent + i, count);
+          const VF along = hn::Mul(tangent, hn::Sub(hn::Mul(gx, moveY), hn::Mul(gy, moveX)));
+          const VF twice = hn::Add(own, own);
+          moveX = hn::Sub(moveX, hn::MulAdd(twice, gx, hn::Mul(along, gy)));
+          moveY = hn::Sub(moveY, hn::Sub(hn::Mul(twice, gy), hn::Mul(along, gx)));
+        }
+        storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
+        storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
+        storeSome(hn::Add(loadSome(loop.totalX + i, count), moveX), loop.totalX + i, count);
+        storeSome(hn::Add(loadSome(loop.totalY + i, count), moveY), loop.totalY + i, count);
+        if (loop.kappa != nullptr) storeSome(hn::Add(loadSome(loop.kappa + i, count), own), loop.kappa + i, count);
+      });
 }
 
 void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t begin, std::size_t end) {
@@ -423,7 +520,7 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
 }  // namespace
 
 const PairLoops& widePairLoops() {
-  static constexpr PairLoops kLoops{density, displace, viscosity};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity};
   return kLoops;
 }
 

@@ -1,267 +1,34 @@
 #include <froude/solver/fluid/pbf.h>
 
-#include <array>
-#include <limits>
-
 #include <froude/base/parallel.h>
-#include <froude/solver/coupling/leak_check.h>
-#include <froude/solver/fluid/fluid_cells.h>
-#include <froude/solver/fluid/kernel.h>
-#include <froude/solver/fluid/lattice.h>
 
 namespace froude {
 namespace {
 
 // Defaults and their measurements: docs/decisions/solver-pbf.md.
 constexpr double kCourant = 0.6;  // of the support radius a sub-step; 1 would be unstable by definition
-// Largest κ = p·dt²/dx², of twice the typical pressure and of the highest one: beyond, the arrangement of the particles
-// rings.
 constexpr double kTypicalStiffness = 0.15, kLargestStiffness = 0.3;
+constexpr double kSmoothing = 0.05;  // XSPH (the paper's eq. 17)
 constexpr int kMinSweeps = 2, kMaxSweeps = 30;
 constexpr int kFreshSweeps = 300;       // where no pressure is known yet
 constexpr double kTolerance = 2e-4;     // mean density gained in a sub-step
-constexpr double kRelaxation = 0.6;     // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
 constexpr float kStabilization = 0.3f;  // share of the density error that is shifted away a sub-step
-constexpr float kLoose = 0.02f;         // below 1 − this a particle is free to be compressed
-constexpr double kDisplaced = 0.02;     // [dx] by which a wall has kept a particle from where it was to go
-constexpr float kNever = 1e6f;          // density at which a film bears
-constexpr float kSmoothing = 0.05f;  // XSPH (the paper's eq. 17), times √κ: a viscosity of 0.05·dx·√p, on any step
-constexpr double kCellSlack = 1.05;      // cells are larger than the support, for motion inside a solve
-constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
-
-// What is left of a velocity that does not go into any of the walls that the path met.
-Vec2 alongWalls(Vec2 v, const PathResult& path) {
-  for (int k = 0; k < path.contacts; ++k) {
-    const PathResult::Impulse& wall = path.impulses[static_cast<std::size_t>(k)];
-    v -= std::min(0.0, (v - wall.surfaceVelocity).dot(wall.normal)) * wall.normal;
-  }
-  return v;
-}
 
 }  // namespace
 
 Pbf::Pbf(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
-    : def_(def),
-      domain_(domain),
-      dx_(def.spacing),
-      courant_(def.courant > 0.0 ? def.courant : kCourant),
-      pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
-      density_(pool.addColumn<float>("density", ColumnKind::State)),
-      walls_(def.spacing, {def.group, def.collidesWith}) {}
+    : ParticleFluid(def, domain, pool, {kCourant, kTypicalStiffness, kLargestStiffness, kSmoothing}) {}
 
-double Pbf::supportRadius() const { return kernel::kSupport * dx_; }
-double Pbf::particleMass() const { return def_.density * dx_ * dx_; }
-double Pbf::pressureUnit(double dt) const { return dt * dt / (dx_ * dx_); }
-
-StepBound Pbf::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
-  StepBound bound;
-  const double support = supportRadius();
-  if (maxSpeed > 0.0) bound.tighten(courant_ * support / maxSpeed, StepLimit::Courant);
-  if (gravity > 0.0) bound.tighten(0.25 * std::sqrt(support / gravity), StepLimit::Acceleration);
-  PressureScale pressure = pressureScale(pool);
-  if (pressure.largest == 0.0 && !pool.empty()) {
-    // Nothing is known yet: at most what the whole fluid would weigh as one column.
-    const auto [left, right] = std::minmax_element(pool.x().begin(), pool.x().end());
-    const auto [low, high] = std::minmax_element(pool.y().begin(), pool.y().end());
-    pressure.largest = gravity * std::max(*right - *left, *high - *low);
-    pressure.typical = 0.5 * pressure.largest;
-  }
-  const double stiffness = std::max(std::min(2.0 * pressure.typical, pressure.largest) / kTypicalStiffness,
-                                    pressure.largest / kLargestStiffness);
-  if (stiffness > 0.0) bound.tighten(dx_ / std::sqrt(stiffness), StepLimit::Pressure);
-  if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
-  return bound;
+// With λ of free bodies where the pressures bring them.
+DensityLoop Pbf::withBodies(DensityLoop loop) const {
+  if (loop.lambda != nullptr) loop.lambda = bodies_.answered();
+  return loop;
 }
 
-// The typical pressure is Σp²/Σp: two thirds of the highest in a fluid at rest, and little moved by the peaks of a
-// splash, which last a step or two.
-Pbf::PressureScale Pbf::pressureScale(const ParticlePool& pool) const {
-  const auto pressure = pool.column(pressure_);
-  const std::size_t n = pool.size();
-  struct Part {
-    double sum, squares, largest;
-  };
-  const auto all = reduceBlocks<Part>(
-      n, {0.0, 0.0, 0.0},
-      [&](std::size_t begin, std::size_t end) {
-        // Eight lanes, so that no addition waits for the one before it.
-        std::array<float, 8> sum{}, squares{}, largest{};
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::size_t lane = i % 8;
-          sum[lane] += pressure[i];
-          squares[lane] += pressure[i] * pressure[i];
-          largest[lane] = std::max(largest[lane], pressure[i]);
-        }
-        Part part{0.0, 0.0, 0.0};
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-          part.sum += static_cast<double>(sum[lane]);
-          part.squares += static_cast<double>(squares[lane]);
-          part.largest = std::max(part.largest, static_cast<double>(largest[lane]));
-        }
-        return part;
-      },
-      [](const Part& a, const Part& b) {
-        return Part{a.sum + b.sum, a.squares + b.squares, std::max(a.largest, b.largest)};
-      });
-  return {all.largest, all.sum > 0.0 ? all.squares / all.sum : 0.0};
-}
-
-void Pbf::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
-  if (pool.empty()) {
-    bodies_.begin(context.freeBodies, bodyUnits(context.dt));
-    bodies_.settle(nullptr);
-    return;
-  }
-  resizeScratch(pool.size());
-  largestPressure_ = pressureScale(pool).largest;
-  predict(context, pool, impulses, stats);  // lines 1–4
-  sortByCell(context, pool);                // lines 5–7
-  meetWalls(context);
+void Pbf::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
+  bodies_.startFrom({walls_.lambda(), pool.size()});
   warmStart(context, pool);
-  solveDensity(context, pool, stats);               // lines 8–19
-  finishPositions(context, pool, impulses, stats);  // lines 20–21, 23
-  smoothVelocities(context, pool);                  // line 22
-  dragAlongWalls(context, pool, impulses);
-  bookCarried(context, pool, impulses);
-}
-
-void Pbf::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const DiscContact point{0.0, 0.0, 0.0, filter(), true};
-  const double dt = context.dt;
-  auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
-  contacts_.begin(pool.size());
-  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const bool carried = context.carriedUntil && pool.column(*context.carriedUntil)[i] > context.time;
-      const Vec2 g = carried ? Vec2(0.0, 0.0) : context.gravity.at({x[i], y[i]}, context.time);
-      // Until the positions say what the velocity is, it carries the prediction through the sort.
-      vx[i] += dt * g.x();
-      vy[i] += dt * g.y();
-      predictedX_[i] = x[i] + dt * vx[i];
-      predictedY_[i] = y[i] + dt * vy[i];
-    }
-    forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t i) {
-      const Vec2 at(x[i], y[i]), v(vx[i], vy[i]);
-      if (context.obstacles.freeDistance(at, point.filter) > dt * v.norm()) return;
-      PathResult path;
-      followPath(context.obstacles, at, v, dt, point, path);
-      if (path.contacts == 0) return;
-      contacts_.addMean(i, path, at, v, dt);
-      vx[i] = (path.x.x() - x[i]) / dt;
-      vy[i] = (path.x.y() - y[i]) / dt;
-      predictedX_[i] = path.x.x();
-      predictedY_[i] = path.x.y();
-    });
-  });
-  stats.gravityImpulse +=
-      context.gravity.isConstant()
-          ? Vec2(particleMass() * static_cast<double>(pool.size()) * dt * context.gravity.constant())
-          : Vec2(0.0, 0.0);
-  contacts_.book(particleMass(), impulses);
-}
-
-void Pbf::sortByCell(const StepContext& context, ParticlePool& pool) {
-  const std::size_t n = pool.size();
-  wrapPeriodic(pool);
-  grid_.build({predictedX_.data(), n}, {predictedY_.data(), n},
-              fluidFrame(domain_, {predictedX_.data(), n}, {predictedY_.data(), n}, kCellSlack * supportRadius()));
-  if (!grid_.sorted()) pool.permute(grid_.order());
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const double perSpacing = 1.0 / dx_;
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      predictedX_[i] = x[i] + context.dt * vx[i];
-      predictedY_[i] = y[i] + context.dt * vy[i];
-      latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) * perSpacing);
-      latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) * perSpacing);
-      shiftX_[i] = shiftY_[i] = 0.0f;
-    }
-  });
-  findOccupiedCells(grid_, occupied_);
-  findCarried(context, pool);
-}
-
-// What a nozzle carries is a piston to the rest: it neither falls nor gives way. What it is spared goes to the books as
-// the nozzle's.
-void Pbf::findCarried(const StepContext& context, const ParticlePool& pool) {
-  carried_.clear();
-  if (!context.carriedUntil) return;
-  const auto until = pool.column(*context.carriedUntil);
-  for (std::uint32_t i = 0; i < pool.size(); ++i) {
-    if (until[i] > context.time) carried_.push_back({i, {0.0, 0.0}});
-  }
-}
-
-void Pbf::holdCarried(bool asVelocity) {
-  for (Carried& c : carried_) {
-    const std::uint32_t i = c.particle;
-    if (asVelocity) c.spared += Vec2(static_cast<double>(shiftX_[i]), static_cast<double>(shiftY_[i]));
-    shiftX_[i] = shiftY_[i] = 0.0f;
-    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
-    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
-  }
-}
-
-void Pbf::meetWalls(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
-  findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
-  bodies_.begin(context.freeBodies, bodyUnits(context.dt));
-  bodies_.link(walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
-}
-
-PairFrame Pbf::frame() const {
-  const Vec2 period = domain_.box.size() / dx_;
-  return {&grid_,
-          occupied_,
-          runs_.data(),
-          latticeX_.data(),
-          latticeY_.data(),
-          domain_.periodicX ? lattice::coordinate(period.x()) : 0,
-          domain_.periodicY ? lattice::coordinate(period.y()) : 0,
-          walls_.hidden()};
-}
-
-double Pbf::runDensity(const StepContext& context, float* density, float* diagonal, const PressureUpdate& update) {
-  const PairFrame pairs = frame();
-  const bool any = walls_.any();
-  const float* lambda = bodies_.any() ? bodies_.lambda() : walls_.lambda();
-  const DensityLoop loop{any ? lambda : nullptr,
-                         walls_.gradientX(),
-                         walls_.gradientY(),
-                         shiftX_.data(),
-                         shiftY_.data(),
-                         density,
-                         diagonal,
-                         update};
-  const PairLoops& loops = pairLoops(context.simd);
-  excess_.resize(blockCount(occupied_.size(), kCellBlock));
-  parallelFor(occupied_.size(), kCellBlock, [&](std::size_t begin, std::size_t end) {
-    excess_[begin / kCellBlock] = loops.density(pairs, loop, begin, end);
-  });
-  double excess = 0.0;
-  for (const double part : excess_) excess += part;
-  return excess;
-}
-
-void Pbf::runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity) {
-  const PairFrame pairs = frame();
-  const DisplacementLoop loop{pressure,
-                              walls_.any() ? walls_.gradientX() : nullptr,
-                              walls_.gradientY(),
-                              walls_.tangent(),
-                              shiftX_.data(),
-                              shiftY_.data(),
-                              nextX_.data(),
-                              nextY_.data(),
-                              kappa};
-  const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.displace(pairs, loop, begin, end); });
-  latticeX_.swap(nextX_);
-  latticeY_.swap(nextY_);
-  holdCarried(asVelocity);
+  solveDensity(context, pool, stats);  // lines 8–19
 }
 
 void Pbf::warmStart(const StepContext& context, ParticlePool& pool) {
@@ -291,38 +58,26 @@ void Pbf::solveDensity(const StepContext& context, ParticlePool& pool, StepStats
   const bool fresh = largestPressure_ == 0.0;  // nothing was there to warm-start from
   const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
                               static_cast<float>(kRelaxation)};
-  double excess = runDensity(context, density.data(), diagonal_.data(), update);
+  double excess = runDensity(context, withBodies(densityLoop(density.data(), diagonal_.data(), update)));
   bodies_.holdBack(diagonal_.data());
   int sweep = 0;
   const auto count = static_cast<double>(pool.size());
   if (fresh && excess / count > kTolerance) {
-    liftFromCoarse(context, pool);
+    for (std::size_t i = 0; i < pool.size(); ++i) smoothX_[i] = density[i] - target_[i];
+    liftFromCoarse(context, pool, smoothX_.data());
     runDisplacement(context, change_.data(), kappa_.data());
-    bodies_.follow(kappa_.data(), walls_);
-    excess = runDensity(context, density.data(), nullptr, update);
+    bodies_.follow(kappa_.data());
+    excess = runDensity(context, withBodies(densityLoop(density.data(), nullptr, update)));
   }
   for (; !solved(excess / count, sweep, fresh); ++sweep) {
     runDisplacement(context, change_.data(), kappa_.data());
-    bodies_.follow(kappa_.data(), walls_);
-    excess = runDensity(context, density.data(), nullptr, update);
+    bodies_.follow(kappa_.data());
+    excess = runDensity(context, withBodies(densityLoop(density.data(), nullptr, update)));
   }
   bodies_.settle(kappa_.data());
   stats.sweeps = sweep + 1;
   stabilize(context, pool);
   judgeDensity(context, pool, stats);
-}
-
-void Pbf::liftFromCoarse(const StepContext& context, const ParticlePool& pool) {
-  const auto density = pool.column(density_);
-  const std::size_t n = pool.size();
-  coarse_.build(context.obstacles, filter(), grid_, occupied_, density.data());
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) change_[i] = density[i] - target_[i];
-  });
-  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, change_.data(), correction_.data());
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) change_[i] = std::max(0.0f, correction_[i]);
-  });
 }
 
 // `excess`: mean density gained in the sub-step.
@@ -345,256 +100,7 @@ void Pbf::stabilize(const StepContext& context, ParticlePool& pool) {
     }
   });
   runDisplacement(context, change_.data(), nullptr, false);
-  runDensity(context, density.data(), nullptr, {});
-}
-
-void Pbf::judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  const auto density = pool.column(density_), pressure = pool.column(pressure_);
-  const std::size_t n = pool.size();
-  const auto unit = static_cast<float>(1.0 / pressureUnit(context.dt));
-  // A film is as dense as its gap is narrow; that is no compression of the fluid. 0: when it comes out it is new.
-  walls_.forEachFilm([&](std::uint32_t i) { density[i] = 0.0f; });
-  struct Part {
-    double compression;
-    float density, pressure;
-  };
-  const auto all = reduceBlocks<Part>(
-      n, {0.0, 0.0f, 0.0f},
-      [&](std::size_t begin, std::size_t end) {
-        std::array<float, 8> sum{}, dense{}, high{};
-        bool finite = true;
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::size_t lane = i % 8;
-          const float above = density[i] - 1.0f;
-          pressure[i] = unit * kappa_[i];
-          sum[lane] += std::max(0.0f, above);
-          dense[lane] = std::max(dense[lane], above);
-          high[lane] = std::max(high[lane], pressure[i]);
-          finite = finite && std::abs(above) < std::numeric_limits<float>::infinity();
-        }
-        Part part{0.0, finite ? 0.0f : std::numeric_limits<float>::infinity(), 0.0f};
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-          part.compression += static_cast<double>(sum[lane]);
-          part.density = std::max(part.density, dense[lane]);
-          part.pressure = std::max(part.pressure, high[lane]);
-        }
-        return part;
-      },
-      [](const Part& a, const Part& b) {
-        return Part{a.compression + b.compression, std::max(a.density, b.density), std::max(a.pressure, b.pressure)};
-      });
-  stats.meanCompression = all.compression / static_cast<double>(n);
-  stats.maxCompression = static_cast<double>(all.density);
-  largestPressure_ = static_cast<double>(all.pressure);
-}
-
-void Pbf::finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const DiscContact point{0.0, 0.0, 0.0, filter(), true};
-  const double dt = context.dt, rate = 1.0 / dt;
-  const auto density = pool.column(density_);
-  auto travel = [&](std::size_t i) { return Vec2(predictedX_[i] - x[i], predictedY_[i] - y[i]).norm(); };
-  contacts_.begin(pool.size());
-  crushed_.assign(blockCount(pool.size()), 0);
-  if (leaks_.size() < crushed_.size()) leaks_.resize(crushed_.size());
-  for (std::vector<ParticleLeak>& block : leaks_) block.clear();
-  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      predictedX_[i] += dx_ * static_cast<double>(shiftX_[i]);
-      predictedY_[i] += dx_ * static_cast<double>(shiftY_[i]);
-    }
-    forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t i) {
-      const Vec2 at(x[i], y[i]);
-      Vec2 to(predictedX_[i], predictedY_[i]);
-      if (context.obstacles.freeDistance(at, point.filter) > (to - at).norm()) return;
-      PathResult path;
-      const Vec2 v = (to - at) / dt;
-      followPath(context.obstacles, at, v, dt, point, path);
-      if (path.contacts > 0) {
-        // Where it stops is one thing, what it keeps of its velocity another: the shift of the stabilisation is no
-        // velocity, and one that a wall stops is none either.
-        const Vec2 solved =
-            dx_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
-        const Vec2 before = v + solved / dt;
-        const Vec2 shift = (path.x - at - dt * alongWalls(before, path)) / dx_;
-        shiftX_[i] = solvedX_[i] + static_cast<float>(shift.x());
-        shiftY_[i] = solvedY_[i] + static_cast<float>(shift.y());
-        // As it will be computed from the shift, for the books.
-        const Vec2 shifted(static_cast<double>(shiftX_[i] - solvedX_[i]),
-                           static_cast<double>(shiftY_[i] - solvedY_[i]));
-        const Vec2 after = (path.x - at - dx_ * shifted) / dt;
-        // It is not where its density was found: to the next sub-step it is new.
-        if ((path.x - to).norm() > kDisplaced * dx_) density[i] = 0.0f;
-        to = path.x;
-        path.x = at + dt * after;
-        contacts_.addMean(i, path, at, before, dt);
-        path.x = to;
-      }
-      if (const PathLeak leak = checkPath(context.obstacles, at, to, point, path); leak.leaked) {
-        // Only what is squeezed can be here: it has no free place.
-        const auto particle = static_cast<std::uint32_t>(i);
-        if (path.crushed || target_[i] == kNever)
-          ++crushed_[begin / kBlockSize];
-        else
-          leaks_[begin / kBlockSize].push_back({particle, at, to, leak.inside, leak.body, leak.at});
-        pool.kill(particle);
-      }
-      predictedX_[i] = to.x();
-      predictedY_[i] = to.y();
-    });
-    for (std::size_t i = begin; i < end; ++i) {
-      // The shift of the stabilisation is no velocity.
-      vx[i] = (predictedX_[i] - x[i] - dx_ * static_cast<double>(shiftX_[i] - solvedX_[i])) * rate;
-      vy[i] = (predictedY_[i] - y[i] - dx_ * static_cast<double>(shiftY_[i] - solvedY_[i])) * rate;
-      x[i] = predictedX_[i];
-      y[i] = predictedY_[i];
-    }
-  });
-  stats.wallHits += contacts_.size();
-  if (!context.gravity.isConstant()) addFieldGravity(context, pool, stats);
-  for (const std::uint32_t n : crushed_) stats.crushed += n;
-  for (const std::vector<ParticleLeak>& block : leaks_) {
-    stats.leaks += block.size();
-    if (context.leaks == nullptr) continue;
-    for (const ParticleLeak& leak : block) context.leaks->add(leak);
-  }
-  contacts_.book(particleMass(), impulses);
-  // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did
-  // there.
-  const double unit = particleMass() * dx_ / dt;
-  walls_.forEachLink([&](const WallLink& link) {
-    const std::uint32_t i = link.particle;
-    const Vec2 gradient(link.gradientX, link.gradientY);
-    Vec2 impulse = 2.0 * unit * static_cast<double>(kappa_[i]) * gradient;
-    if (walls_.tangent()[i] > 0.0f) {
-      const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
-      impulse -= unit * static_cast<double>(link.lambda) * along.dot(Vec2(solvedX_[i], solvedY_[i])) * along;
-    }
-    const Vec2 at(x[i], y[i]);
-    impulses.add(link.owner, at, impulse, context.obstacles.velocityAt(link.owner, at));
-  });
-}
-
-// The impulse of the field was taken at the old positions; its work is by the midpoint rule along the path.
-void Pbf::addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const {
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const double mass = particleMass(), dt = context.dt;
-  auto sum = [&](auto&& term) {
-    return mass * dt * parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
-             double total = 0.0;
-             for (std::size_t i = begin; i < end; ++i) total += term(Vec2(x[i], y[i]), Vec2(vx[i], vy[i]));
-             return total;
-           });
-  };
-  const Gravity& g = context.gravity;
-  const double t = context.time;
-  stats.gravityImpulse.x() += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - dt * v, t).x(); });
-  stats.gravityImpulse.y() += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - dt * v, t).y(); });
-  stats.gravityWork += sum([&](const Vec2& at, const Vec2& v) { return g.at(at - 0.5 * dt * v, t + 0.5 * dt).dot(v); });
-}
-
-void Pbf::smoothVelocities(const StepContext& context, ParticlePool& pool) {
-  const auto vx = pool.vx(), vy = pool.vy();
-  const std::size_t n = pool.size();
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      velocityX_[i] = static_cast<float>(vx[i]);
-      velocityY_[i] = static_cast<float>(vy[i]);
-    }
-  });
-  const PairFrame pairs = frame();
-  const double stiffness = pressureUnit(context.dt) * largestPressure_;
-  const double viscousUnit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
-  const ViscosityLoop loop{velocityX_.data(),
-                           velocityY_.data(),
-                           kSmoothing * static_cast<float>(std::sqrt(stiffness)),
-                           static_cast<float>(viscousUnit / kernel::kLaplacianMoment),
-                           smoothX_.data(),
-                           smoothY_.data()};
-  const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.viscosity(pairs, loop, begin, end); });
-  for (Carried& c : carried_) {
-    const std::uint32_t i = c.particle;
-    if (walls_.tangent()[i] > 0.0f) {  // of its way along a wall the share λ is the wall's
-      const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
-      c.spared -= static_cast<double>(walls_.lambda()[i]) * along.dot(c.spared) * along;
-    }
-    c.spared += context.dt / dx_ * Vec2(static_cast<double>(smoothX_[i]), static_cast<double>(smoothY_[i]));
-    smoothX_[i] = smoothY_[i] = 0.0f;
-  }
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      vx[i] += static_cast<double>(smoothX_[i]);
-      vy[i] += static_cast<double>(smoothY_[i]);
-    }
-  });
-}
-
-// Implicit, v = (v + Σ c v_wall)/(1 + Σ c): a particle on a wall moves with it, on any step.
-void Pbf::dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const {
-  if (def_.viscosity == 0.0 || !context.obstacles.anySticks()) return;
-  const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  walls_.forEachParticle([&](std::span<const WallLink> links) {
-    const std::uint32_t i = links.front().particle;
-    const Vec2 at(x[i], y[i]);
-    auto wall = [&](const WallLink& link) {
-      return context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY));
-    };
-    double total = 0.0;
-    Vec2 pull(vx[i], vy[i]);
-    for (const WallLink& link : links) {
-      const double c = unit * static_cast<double>(link.drag);
-      total += c;
-      if (c > 0.0) pull += c * wall(link);
-    }
-    if (total == 0.0) return;
-    const Vec2 v = pull / (1.0 + total);
-    for (const WallLink& link : links) {
-      const double c = unit * static_cast<double>(link.drag);
-      if (c > 0.0) impulses.add(link.owner, at, particleMass() * c * (v - wall(link)), wall(link));
-    }
-    vx[i] = v.x();
-    vy[i] = v.y();
-  });
-}
-
-void Pbf::bookCarried(const StepContext& context, const ParticlePool& pool, ImpulseLedger& impulses) const {
-  for (const Carried& c : carried_) {
-    const Vec2 at(pool.x()[c.particle], pool.y()[c.particle]), v(pool.vx()[c.particle], pool.vy()[c.particle]);
-    const Vec2 fall = context.dt * context.gravity.at(at, context.time);
-    impulses.add(-1, at, particleMass() * (dx_ / context.dt * c.spared + fall), v);
-  }
-}
-
-void Pbf::wrapPeriodic(ParticlePool& pool) {
-  if (!domain_.periodicX && !domain_.periodicY) return;
-  const auto x = pool.x(), y = pool.y();
-  // The whole path is moved by a period, so that velocity = displacement/dt stays true.
-  auto wrap = [](double& predicted, double& at, double low, double length) {
-    const double turns = std::floor((predicted - low) / length);
-    predicted -= turns * length;
-    at -= turns * length;
-  };
-  for (std::size_t i = 0; i < pool.size(); ++i) {
-    if (domain_.periodicX) wrap(predictedX_[i], x[i], domain_.box.min.x(), domain_.box.size().x());
-    if (domain_.periodicY) wrap(predictedY_[i], y[i], domain_.box.min.y(), domain_.box.size().y());
-  }
-}
-
-void Pbf::resizeScratch(std::size_t n) {
-  for (AlignedArray<double>* a : {&predictedX_, &predictedY_}) a->resize(n);
-  for (AlignedArray<std::int32_t>* a : {&latticeX_, &latticeY_, &nextX_, &nextY_}) a->resize(n);
-  for (AlignedArray<float>* a : {&shiftX_, &shiftY_, &solvedX_, &solvedY_, &kappa_, &change_, &correction_, &target_,
-                                 &diagonal_, &velocityX_, &velocityY_, &smoothX_, &smoothY_}) {
-    a->resize(n);
-  }
-}
-
-std::size_t Pbf::memoryBytes() const {
-  return 2 * predictedX_.capacity() * sizeof(double) + 17 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
-         walls_.memoryBytes() + coarse_.memoryBytes();
+  runDensity(context, withBodies(densityLoop(density.data(), nullptr, {})));
 }
 
 }  // namespace froude
