@@ -149,7 +149,7 @@ double World::pressureAt(const Vec2& point) const {
   if (impl_->fluid == nullptr) return std::nan("");
   impl_->query.update(*impl_->fluid, impl_->def.domain, impl_->def.fluid->spacing, impl_->version);
   const auto pressure = impl_->fluid->column(*impl_->fluid->findColumn<float>("pressure"));
-  return kernel::kGradientMoment * impl_->def.fluid->density *
+  return impl_->fluidModel->pressureFactor() * impl_->def.fluid->density *
          impl_->query.mean(point, [&](std::uint32_t i) { return static_cast<double>(pressure[i]); });
 }
 

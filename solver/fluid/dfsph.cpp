@@ -1,27 +1,24 @@
 #include <froude/solver/fluid/dfsph.h>
 
-#include <limits>
-
-#include <froude/base/parallel.h>
 #include <froude/solver/fluid/lattice.h>
 
 namespace froude {
 namespace {
 
-double env(const char* name, double value) { const char* s = std::getenv(name); return s ? std::atof(s) : value; }
-const double kCourant = env("DF_C", 0.3);  // of the support radius a sub-step
-const double kTypicalStiffness = env("DF_T", 0.15), kLargestStiffness = env("DF_L", 0.3);
-const double kSmoothing = env("DF_S", 0.0);
-const int kMinSweeps = (int)env("DF_MIN", 2), kMaxSweeps = (int)env("DF_MAX", 100);
-const int kFreshSweeps = 1000;
-const double kTolerance = env("DF_TOL", 1e-4);
-const double kFull = env("DF_FULL", 0.97);       // density
-const double kSkew = env("DF_SKEW", 0.3);       // |∇C|
-const int kShiftSweeps = (int)env("DF_SH", 1);
-const double kShare = env("DF_SHARE", 0.3);
-const int kB = (int)env("DF_B", 1);
-const double kBack = env("DF_BACK", 0.0);
-const double kNegD = env("DF_NEGD", 0.0);
+// Defaults and their measurements: docs/decisions/solver-dfsph.md.
+constexpr double kCourant = 0.4;  // of the support radius a sub-step
+constexpr double kTypicalStiffness = 0.15, kLargestStiffness = 0.3;
+constexpr double kSmoothing = 0.03;  // XSPH
+constexpr int kMinSweeps = 2, kMaxSweeps = 100;
+constexpr int kFreshSweeps = 1000;         // where no pressure is known yet
+constexpr double kTolerance = 1e-4;        // mean change of density in a sub-step
+constexpr double kDensityTolerance = 5e-4; // mean compression
+constexpr int kDensitySweeps = 3;
+constexpr float kShare = 0.5f;  // of a density error that a sweep takes away
+constexpr float kFull = 0.95f;  // density from which a kernel counts as full
+constexpr float kSkew = 0.3f;   // |S + g| from which it does not
+constexpr float kEven = 0.2f;   // share of S by which a particle gives way to an uneven neighbourhood
+constexpr float kNoFloor = -1e30f;
 
 }  // namespace
 
@@ -29,10 +26,40 @@ Dfsph::Dfsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool, {kCourant, kTypicalStiffness, kLargestStiffness, kSmoothing}) {}
 
 void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  prepare(context, pool);
+  findArrangement(context, pool);
+  findWallGain(context);
+  warmStart(context, pool);
   solveDivergence(context, pool, stats);
-  solveDensity(context, pool, stats);
+  solveDensity(context, pool);
   judgeDensity(context, pool, stats);
+}
+
+void Dfsph::findArrangement(const StepContext& context, ParticlePool& pool) {
+  const std::size_t n = pool.size();
+  for (AlignedArray<float>* a : {&momentXX_, &momentXY_, &momentYY_, &skewX_, &skewY_, &totalX_, &totalY_, &least_,
+                                 &wallGain_}) {
+    a->resize(n);
+  }
+  place_.resize(n);
+  const auto density = pool.column(density_);
+  const MomentLoop loop{walls_.any() ? walls_.lambda() : nullptr, density.data(),  skewX_.data(), skewY_.data(),
+                        diagonal_.data(), {momentXX_.data(), momentXY_.data(), momentYY_.data()}};
+  const PairFrame pairs = frame();
+  const PairLoops& loops = pairLoops(context.simd);
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.moments(pairs, loop, begin, end); });
+  const float *lambda = walls_.lambda(), *wallX = walls_.gradientX(), *wallY = walls_.gradientY();
+  const bool walls = walls_.any();
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float x = skewX_[i] + (walls ? wallX[i] : 0.0f), y = skewY_[i] + (walls ? wallY[i] : 0.0f);
+      const bool full = density[i] > kFull && x * x + y * y < kSkew * kSkew;
+      place_[i] = !full                           ? GradientCorrection::Place::AtSurface
+                  : walls && lambda[i] > 0.0f ? GradientCorrection::Place::AtWall
+                                                  : GradientCorrection::Place::Inside;
+    }
+  });
+  correction_.build(grid_, occupied_, {momentXX_.data(), momentXY_.data(), momentYY_.data()}, place_.data());
 }
 
 // λ grows where a wall comes nearer: the same as if the particle went the other way.
@@ -43,62 +70,64 @@ void Dfsph::findWallGain(const StepContext& context) {
     if (link.owner < 0) return;
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
     const Vec2 way = scale * context.obstacles.velocityAt(link.owner, at);
-    wallGain_[link.particle] -= static_cast<float>(way.x()) * link.gradientX + static_cast<float>(way.y()) * link.gradientY;
+    const Vec2 gradient(static_cast<double>(link.gradientX), static_cast<double>(link.gradientY));
+    wallGain_[link.particle] -= static_cast<float>(way.dot(gradient));
   });
 }
 
-void Dfsph::prepare(const StepContext& context, ParticlePool& pool) {
-  const std::size_t n = pool.size();
-  for (AlignedArray<float>* a : {&totalX_, &totalY_, &least_, &wallGain_, &skewX_, &skewY_}) a->resize(n);
-  for (Field* f : {&correction_, &scaled_}) f->xx.resize(n), f->xy.resize(n), f->yy.resize(n);
-  findWallGain(context);
+void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
   const auto vx = pool.vx(), vy = pool.vy();
   const auto pressure = pool.column(pressure_), density = pool.column(density_);
-  const MomentLoop loop{walls_.any() ? walls_.lambda() : nullptr, walls_.gradientX(), walls_.gradientY(),
-                        density.data(), skewX_.data(), skewY_.data(), diagonal_.data(), correction_.out()};
-  const PairFrame pairs = frame();
-  const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.moments(pairs, loop, begin, end); });
   const auto unit = static_cast<float>(pressureUnit(context.dt));
   const double way = context.dt / dx_;
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+  const Matrices<const float> b = correction_.matrices();
+  const bool walls = walls_.any();
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       totalX_[i] = static_cast<float>(way * vx[i]);
       totalY_[i] = static_cast<float>(way * vy[i]);
-      const float gx = walls_.any() ? walls_.gradientX()[i] : 0.0f, gy = walls_.any() ? walls_.gradientY()[i] : 0.0f;
-      const float ax = skewX_[i] + gx, ay = skewY_[i] + gy;
-      const bool full = density[i] > (float)kFull && ax * ax + ay * ay < (float)(kSkew * kSkew);
-      const float xx = correction_.xx[i], xy = correction_.xy[i], yy = correction_.yy[i], det = xx * yy - xy * xy;
-      const bool corrected = kB > 0 && full && (walls_.any() ? walls_.lambda()[i] : 0.0f) == 0.0f && det > 0.5f;
-      const float b0 = corrected ? 1.0f / det : 1.0f;
-      correction_.xx[i] = corrected ? yy * b0 : 1.0f;
-      correction_.yy[i] = corrected ? xx * b0 : 1.0f;
-      correction_.xy[i] = corrected ? -xy * b0 : 0.0f;
-      const float cx = correction_.xx[i] * skewX_[i] + correction_.xy[i] * skewY_[i], cy = correction_.xy[i] * skewX_[i] + correction_.yy[i] * skewY_[i];
-      const float b2 = correction_.xx[i] * correction_.xx[i] + correction_.yy[i] * correction_.yy[i] + 2.0f * correction_.xy[i] * correction_.xy[i];
-      diagonal_[i] = (cx + gx) * (cx + 2.0f * gx) + (cy + gy) * (cy + 2.0f * gy) + 0.5f * b2 * diagonal_[i];
-      least_[i] = full ? -1e30f : 0.0f;
+      const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
+      least_[i] = surface ? 0.0f : kNoFloor;
       kappa_[i] = std::max(unit * pressure[i], least_[i]);
-      target_[i] = full ? 0.0f : std::max(0.0f, 1.0f - kLoose - density[i]);
+      // What has room may be compressed up to its rest density.
+      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : 0.0f;
+      // Of the pressure system, (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
+      const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
+      const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
+      const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
+      diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
     }
   });
+  // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
   walls_.forEachFilm([&](std::uint32_t i) {
     target_[i] = kNever;
     kappa_[i] = least_[i] = 0.0f;
   });
+  push(context, kappa_.data(), nullptr);
 }
 
+// Displacement by κ; `kappa`, where it is not null, takes it too.
 void Dfsph::push(const StepContext& context, const float* pressure, float* kappa) {
+  const Matrices<const float> b = correction_.matrices();
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      scaled_.xx[i] = pressure[i] * correction_.xx[i];
-      scaled_.xy[i] = pressure[i] * correction_.xy[i];
-      scaled_.yy[i] = pressure[i] * correction_.yy[i];
+      momentXX_[i] = pressure[i] * b.xx[i];
+      momentXY_[i] = pressure[i] * b.xy[i];
+      momentYY_[i] = pressure[i] * b.yy[i];
     }
   });
-  const PushLoop loop{pressure, scaled_.in(), skewX_.data(), skewY_.data(), walls_.any() ? walls_.gradientX() : nullptr,
-                      walls_.gradientY(), walls_.tangent(), shiftX_.data(), shiftY_.data(), totalX_.data(), totalY_.data(), kappa};
+  const PushLoop loop{pressure,
+                      {momentXX_.data(), momentXY_.data(), momentYY_.data()},
+                      skewX_.data(),
+                      skewY_.data(),
+                      walls_.any() ? walls_.gradientX() : nullptr,
+                      walls_.gradientY(),
+                      walls_.tangent(),
+                      shiftX_.data(),
+                      shiftY_.data(),
+                      totalX_.data(),
+                      totalY_.data(),
+                      kappa};
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
@@ -112,72 +141,80 @@ void Dfsph::push(const StepContext& context, const float* pressure, float* kappa
   }
 }
 
-void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  const bool fresh = largestPressure_ == 0.0;
-  const auto count = static_cast<double>(pool.size());
-  bodies_.startFrom({wallGain_.data(), pool.size()});
-  bodies_.holdBack(diagonal_.data());
-  const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
+// What the displacements add to the densities, on the mean, and the change of κ that takes it away.
+double Dfsph::runDivergence(const StepContext& context) {
+  const PressureUpdate update{target_.data(),  diagonal_.data(),
+                              kappa_.data(),   change_.data(),
                               static_cast<float>(kRelaxation), least_.data()};
-  auto run = [&] {
-    const DivergenceLoop loop{totalX_.data(), totalY_.data(), correction_.in(), walls_.any() ? walls_.gradientX() : nullptr,
-                              walls_.gradientY(), bodies_.answered(), update};
-    const PairFrame pairs = frame();
-    const PairLoops& loops = pairLoops(context.simd);
-    return sumOverCells([&](std::size_t begin, std::size_t end) { return loops.divergence(pairs, loop, begin, end); }) /
-           count;
-  };
-  push(context, kappa_.data(), nullptr);
-  double excess = run();
-  int sweep = 0;
+  const DivergenceLoop loop{totalX_.data(),
+                            totalY_.data(),
+                            correction_.matrices(),
+                            walls_.any() ? walls_.gradientX() : nullptr,
+                            walls_.gradientY(),
+                            bodies_.answered(),
+                            update};
+  const PairFrame pairs = frame();
+  const PairLoops& loops = pairLoops(context.simd);
+  const double sum = sumOverCells(
+      [&](std::size_t begin, std::size_t end) { return loops.divergence(pairs, loop, begin, end); });
+  return sum / static_cast<double>(grid_.size());
+}
+
+void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats) {
+  const bool fresh = largestPressure_ == 0.0;  // nothing was there to warm-start from
   const double tolerance = (fresh ? 0.1 : 1.0) * kTolerance;
   const int most = fresh ? kFreshSweeps : kMaxSweeps;
-  while (sweep < most && (sweep < kMinSweeps || excess > tolerance)) {
+  bodies_.startFrom({wallGain_.data(), pool.size()});
+  bodies_.holdBack(diagonal_.data());
+  double error = runDivergence(context);
+  int sweep = 0;
+  auto solved = [&] {
+    if (def_.sweeps > 0) return sweep == def_.sweeps;
+    return sweep >= most || (sweep >= kMinSweeps && error < tolerance);
+  };
+  for (; !solved(); ++sweep) {
     push(context, change_.data(), kappa_.data());
     bodies_.follow(kappa_.data());
-    excess = run();
-    ++sweep;
+    error = runDivergence(context);
   }
   bodies_.settle(kappa_.data());
   stats.sweeps = sweep + 1;
 }
 
-void Dfsph::solveDensity(const StepContext& context, ParticlePool& pool, StepStats&) {
-  const std::size_t n = pool.size();
-  const auto density = pool.column(density_);
+// Away from where neighbours are nearer: under negative pressure they would clump.
+void Dfsph::evenOut() {
   constexpr auto kUnits = static_cast<float>(lattice::kUnitsPerSpacing);
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       solvedX_[i] = shiftX_[i];
       solvedY_[i] = shiftY_[i];
+      if (correction_.deep(i)) {
+        shiftX_[i] -= kEven * skewX_[i];
+        shiftY_[i] -= kEven * skewY_[i];
+      }
       latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(shiftX_[i] * kUnits)));
       latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(shiftY_[i] * kUnits)));
+      if (target_[i] != kNever) target_[i] = 1.0f;
     }
   });
-  if (kBack > 0) parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (least_[i] == 0.0f) continue;
-      const float gx = walls_.any() ? walls_.gradientX()[i] : 0.0f, gy = walls_.any() ? walls_.gradientY()[i] : 0.0f;
-      float sx = -2.0f * (float)kBack * (skewX_[i] + gx), sy = -2.0f * (float)kBack * (skewY_[i] + gy);
-      shiftX_[i] += sx; shiftY_[i] += sy;
-      latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(sx * kUnits)));
-      latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(sy * kUnits)));
-    }
-  });
-  for (int k = 0; k < kShiftSweeps; ++k) {
-    runDensity(context, densityLoop(density.data(), nullptr, {}));
-    parallelFor(n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const bool full = least_[i] < 0.0f;
-        const float off = density[i] - 1.0f;
-        change_[i] = (float)kShare * std::max(full ? (float)(-kNegD) : 0.0f, off) / std::max(diagonal_[i], kSmallestDiagonal);
-      }
-    });
-    runDisplacement(context, change_.data(), nullptr, false);
-  }
-  runDensity(context, densityLoop(density.data(), nullptr, {}));
 }
 
-std::size_t Dfsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 4 * totalX_.capacity() * sizeof(float); }
+void Dfsph::solveDensity(const StepContext& context, ParticlePool& pool) {
+  evenOut();
+  std::fill_n(smoothX_.begin(), pool.size(), 0.0f);  // a κ that starts from nothing in each sweep
+  const PressureUpdate update{target_.data(), diagonal_.data(), smoothX_.data(), change_.data(), kShare};
+  const DensityLoop loop = densityLoop(pool.column(density_).data(), nullptr, update);
+  const auto count = static_cast<double>(pool.size());
+  for (int sweep = 0;; ++sweep) {
+    const double compression = runDensity(context, loop) / count;
+    if (compression < kDensityTolerance || sweep == kDensitySweeps) return;
+    runDisplacement(context, change_.data(), nullptr, false);
+  }
+}
+
+std::size_t Dfsph::memoryBytes() const {
+  return ParticleFluid::memoryBytes() + correction_.memoryBytes() + 9 * totalX_.capacity() * sizeof(float) +
+         place_.capacity();
+}
 
 }  // namespace froude

@@ -1,10 +1,13 @@
-// Divergence-free SPH: an incompressible fluid by two linear solves a sub-step, one for velocities, one for positions.
+// Divergence-free SPH: an incompressible fluid by two solves a sub-step, one for velocities, one for positions.
 //
 // Bender & Koschier, "Divergence-free SPH for incompressible and viscous fluids", IEEE Trans. Vis. Comput. Graph. 23
-// (2017). The velocities are made free of divergence where the particles come to be; what their densities then are too
-// high or too low is shifted away, which is no velocity (Hu & Adams, J. Comput. Phys. 227 (2007)).
+// (2017), with three changes (docs/decisions/solver-dfsph.md): the solve for densities moves particles and leaves their
+// velocities (Hu & Adams, J. Comput. Phys. 227 (2007)); gradients are corrected (gradient_correction.h); pressures may be
+// negative inside the fluid, so that particles there are also drawn apart evenly (Lind et al., J. Comput. Phys. 231
+// (2012)).
 #pragma once
 
+#include <froude/solver/fluid/gradient_correction.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
 namespace froude {
@@ -16,22 +19,22 @@ class Dfsph final : public ParticleFluid {
 
  private:
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
-  void prepare(const StepContext& context, ParticlePool& pool);
-  void solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats);
-  void solveDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
-  void push(const StepContext& context, const float* pressure, float* kappa);
+  void findArrangement(const StepContext& context, ParticlePool& pool);
   void findWallGain(const StepContext& context);
+  void warmStart(const StepContext& context, const ParticlePool& pool);
+  void solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats);
+  void solveDensity(const StepContext& context, ParticlePool& pool);
+  double runDivergence(const StepContext& context);
+  void push(const StepContext& context, const float* pressure, float* kappa);
+  void evenOut();
 
-  AlignedArray<float> totalX_, totalY_;  // displacement in the sub-step
-  AlignedArray<float> skewX_, skewY_;
-  struct Field {
-    AlignedArray<float> xx, xy, yy;
-    Matrices<float> out() { return {xx.data(), xy.data(), yy.data()}; }
-    Matrices<const float> in() const { return {xx.data(), xy.data(), yy.data()}; }
-  };
-  Field correction_, scaled_;            // B, κB
-  AlignedArray<float> least_;            // lowest κ: 0 at a free surface, else none
-  AlignedArray<float> wallGain_;         // what the walls' own motion adds to λ
+  GradientCorrection correction_;
+  AlignedArray<GradientCorrection::Place> place_;
+  AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the solve
+  AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W
+  AlignedArray<float> totalX_, totalY_;                 // displacement in the sub-step
+  AlignedArray<float> least_;                           // lowest κ: 0 at a surface, else none
+  AlignedArray<float> wallGain_;                        // what the walls' own motion adds to λ
 };
 
 }  // namespace froude

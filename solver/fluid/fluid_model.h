@@ -27,6 +27,8 @@ class FluidModel {
   virtual double supportRadius() const = 0;
   /// Mass of a particle [kg/m].
   virtual double particleMass() const = 0;
+  /// What its column "pressure" is times to be p/ρ: the share of a pressure gradient that its particles feel.
+  virtual double pressureFactor() const { return 1.0; }
   /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over all particles.
   virtual StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const = 0;
   /// One sub-step: velocities and positions to the end of it. The pool comes out sorted by cell.

@@ -80,11 +80,9 @@ struct Matrices {
 };
 
 /// Density as above without displacement, and what the arrangement makes of gradients: moment = −Σ r ⊗ ∇W (the unit
-/// matrix in a continuum), |S + g|², and Σ|∇W|².
+/// matrix in a continuum), S = Σ∇W and Σ|∇W|².
 struct MomentLoop {
   const float* lambda = nullptr;  // null: no walls near any particle
-  const float* wallX = nullptr;
-  const float* wallY = nullptr;
   float* density = nullptr;
   float* skewX = nullptr;  // S
   float* skewY = nullptr;

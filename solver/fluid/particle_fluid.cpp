@@ -56,8 +56,8 @@ StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, do
   }
   const double stiffness = std::max(std::min(2.0 * pressure.typical, pressure.largest) / settings_.typicalStiffness,
                                     pressure.largest / settings_.largestStiffness);
-  if (stiffness > 0.0) bound.tighten(dx_ / std::sqrt(stiffness), StepLimit::Pressure);
-  if (def_.viscosity > 0.0) bound.tighten(0.125 * dx_ * dx_ / def_.viscosity, StepLimit::Viscosity);
+  if (stiffness > 0.0) bound.tighten(def_.spacing / std::sqrt(stiffness), StepLimit::Pressure);
+  if (def_.viscosity > 0.0) bound.tighten(0.125 * def_.spacing * def_.spacing / def_.viscosity, StepLimit::Viscosity);
   return bound;
 }
 

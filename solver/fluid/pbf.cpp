@@ -1,6 +1,7 @@
 #include <froude/solver/fluid/pbf.h>
 
 #include <froude/base/parallel.h>
+#include <froude/solver/fluid/kernel.h>
 
 namespace froude {
 namespace {
@@ -18,6 +19,8 @@ constexpr float kStabilization = 0.3f;  // share of the density error that is sh
 
 Pbf::Pbf(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool, {kCourant, kTypicalStiffness, kLargestStiffness, kSmoothing}) {}
+
+double Pbf::pressureFactor() const { return kernel::kGradientMoment; }
 
 // With λ of free bodies where the pressures bring them.
 DensityLoop Pbf::withBodies(DensityLoop loop) const {

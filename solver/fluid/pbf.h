@@ -12,6 +12,7 @@ namespace froude {
 class Pbf final : public ParticleFluid {
  public:
   Pbf(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
+  double pressureFactor() const override;
 
  private:
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
