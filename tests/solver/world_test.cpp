@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 #include "support/worlds.h"
 
 namespace {
-std::size_t allocations = 0;
+std::atomic<std::size_t> allocations{0};  // of all threads
 }
 
 // Counts every allocation of this test program; the sanitizers bring their own operators.
