@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Draws the rows of contact_bench as time against the number of vertices: contact_chart.py ROWS.csv OUT.svg"""
 import csv
-import math
 import sys
+
+import svg_chart
 
 # Case in the rows: label, colour (of a palette that colour-blind readers tell apart), dashes.
 SERIES = {
@@ -18,12 +19,10 @@ SERIES = {
     "libccd/gjk_intersect": ("libccd GJK, near", "#999999", ""),
     "libccd/mpr_penetration": ("libccd MPR, near", "#999999", "5 4"),
 }
-WIDTH, HEIGHT = 900, 540
-LEFT, RIGHT, TOP, BOTTOM = 76, 250, 56, 64
 
 
 def read(path):
-    """{case: [(vertices, ns)]} of the last run of each case, and a line about the machine."""
+    """{case: [(vertices, ns)]} of the last run of each case and a line about the machine; nothing without rows."""
     found, about = {}, ""
     with open(path, newline="") as rows:
         for row in csv.DictReader(rows):
@@ -31,76 +30,41 @@ def read(path):
             if name in SERIES:
                 found.setdefault(name, {})[int(size)] = float(row["ns_best"])
                 about = f'{row["cpu"]}, commit {row["commit"]}, 1 thread'
-    return {name: sorted(points.items()) for name, points in found.items()}, about
+    return found and ({name: sorted(points.items()) for name, points in found.items()}, about)
 
 
-def chart(found, about):
+def draw(rows):
+    found, about = rows
     points = [p for series in found.values() for p in series]
-    x0, x1 = (math.log10(f(n for n, _ in points)) for f in (min, max))
-    y0 = math.floor(math.log10(min(ns for _, ns in points)))
-    y1 = math.ceil(math.log10(max(ns for _, ns in points)))
-
-    def px(n):
-        return LEFT + (math.log10(n) - x0) / (x1 - x0) * (WIDTH - LEFT - RIGHT)
-
-    def py(ns):
-        return HEIGHT - BOTTOM - (math.log10(ns) - y0) / (y1 - y0) * (HEIGHT - TOP - BOTTOM)
-
-    out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}" '
-        'font-family="DejaVu Sans, sans-serif" font-size="12">',
-        f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
-        f'<text x="{LEFT}" y="24" font-size="16">Two convex polygons: time of a query against their vertices</text>',
-        f'<text x="{LEFT}" y="42" fill="#555">random pairs; {about}</text>',
-    ]
-    for n in (4, 8, 16, 32, 64, 125, 250, 500, 1000):
-        out.append(f'<line x1="{px(n):.1f}" y1="{TOP}" x2="{px(n):.1f}" y2="{HEIGHT - BOTTOM}" stroke="#ddd"/>')
-        out.append(f'<text x="{px(n):.1f}" y="{HEIGHT - BOTTOM + 18}" text-anchor="middle">{n}</text>')
-    for k in range(y0, y1 + 1):
-        y = py(10.0**k)
-        out.append(f'<line x1="{LEFT}" y1="{y:.1f}" x2="{WIDTH - RIGHT}" y2="{y:.1f}" stroke="#ddd"/>')
-        out.append(f'<text x="{LEFT - 8}" y="{y + 4:.1f}" text-anchor="end">{10**k:,}</text>')
-    out.append(
-        f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 22}" text-anchor="middle">vertices of each polygon</text>'
+    sizes, times = [n for n, _ in points], [ns for _, ns in points]
+    low, high = svg_chart.decades(min(times), max(times))
+    chart = svg_chart.Chart(
+        "Two convex polygons: time of a query against their vertices",
+        f"random pairs; {about}",
+        size=(900, 540),
+        margins=(76, 250, 56, 64),
+        x=(min(sizes), max(sizes)),
+        y=(10.0**low, 10.0**high),
     )
-    middle = (TOP + HEIGHT - BOTTOM) / 2
-    out.append(
-        f'<text x="20" y="{middle}" text-anchor="middle" transform="rotate(-90 20 {middle})">nanoseconds a pair, least of the runs</text>'
+    chart.axes(
+        {n: n for n in (4, 8, 16, 32, 64, 125, 250, 500, 1000)},
+        "vertices of each polygon",
+        {10.0**k: f"{10**k:,}" for k in range(low, high + 1)},
+        "nanoseconds a pair, least of the runs",
     )
-    legend = TOP + 10
+    x, legend = chart.right + 16, chart.top + 10
     for name, (label, colour, dashes) in SERIES.items():
         if name not in found:
             continue
-        path = " ".join(f"{px(n):.1f},{py(ns):.1f}" for n, ns in found[name])
-        out.append(
-            f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.5" stroke-dasharray="{dashes}"/>'
-        )
+        look = f'stroke="{colour}" stroke-width="1.5" stroke-dasharray="{dashes}"'
+        chart.path([(chart.px(n), chart.py(ns)) for n, ns in found[name]], look)
         for n, ns in found[name]:
-            out.append(
-                f'<circle cx="{px(n):.1f}" cy="{py(ns):.1f}" r="3" fill="{colour}"><title>{label}, {n}: {ns:g} ns</title></circle>'
-            )
-        x = WIDTH - RIGHT + 16
-        out.append(
-            f'<line x1="{x}" y1="{legend}" x2="{x + 28}" y2="{legend}" stroke="{colour}" stroke-width="1.5" stroke-dasharray="{dashes}"/>'
-        )
-        out.append(f'<text x="{x + 36}" y="{legend + 4}">{label}</text>')
+            chart.circle(chart.px(n), chart.py(ns), 3, f'fill="{colour}"', f"{label}, {n}: {ns:g} ns")
+        chart.line(x, legend, x + 28, legend, look)
+        chart.text(x + 36, legend + 4, label)
         legend += 22
-    out.append("</svg>")
-    return "\n".join(out) + "\n"
-
-
-def main(arguments):
-    if len(arguments) != 2:
-        print("usage: contact_chart.py ROWS.csv OUT.svg", file=sys.stderr)
-        return 2
-    found, about = read(arguments[0])
-    if not found:
-        print(f"{arguments[0]}: no rows of contact in it", file=sys.stderr)
-        return 2
-    with open(arguments[1], "w") as out:
-        out.write(chart(found, about))
-    return 0
+    return chart.svg()
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(svg_chart.run(sys.argv[1:], "contact_chart.py", "contact", read, draw))

@@ -57,6 +57,7 @@ struct World::Impl {
   void emit(double dt);
   void findMouth(const EmitterDef& nozzle, double dt);
   bool hasRoom(const Vec2& at);
+  Vec2 centerArmBefore(std::size_t body, double dt) const;
   void publishBodies(double dt);
   BodyState stateOf(std::size_t body) const;
   void account(const StepStats& stats, double dt);

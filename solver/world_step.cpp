@@ -212,6 +212,12 @@ BodyState World::Impl::stateOf(std::size_t i) const {
   return state;
 }
 
+// From the frame's origin to the centre of mass at the start of the sub-step, where contacts are felt.
+Vec2 World::Impl::centerArmBefore(std::size_t i, double dt) const {
+  const BodyMotion& m = bodies.motion(i);
+  return Rotation::of(m.angle - dt * m.spin).apply(bodies.definition(i).shape->centroid() - bodies.frameOrigin(i));
+}
+
 void World::Impl::publishBodies(double dt) {
   const bool anyFree = bodies.anyFree();
   bodies.finishStep(dt);
@@ -225,8 +231,7 @@ void World::Impl::publishBodies(double dt) {
     if (anyFree) {
       const BodyImpulse& felt = rigid.felt(i);
       state.force += felt.impulse / dt;
-      const Vec2 arm = center - bodies.motion(i).transform().position;  // felt is about the frame's origin
-      state.torque += (felt.moment - cross(arm, felt.impulse)) / dt;
+      state.torque += (felt.moment - cross(centerArmBefore(i, dt), felt.impulse)) / dt;
     }
     bodyStates[i] = state;
   }

@@ -46,6 +46,7 @@ void RigidSolver::admitBodies(const BodySet& bodies) {
   }
   gravityOf_.resize(blockCount(n, kBlock));
   motorImpulse_.assign(hinged_.size(), 0.0);
+  spinBefore_.assign(hinged_.size(), 0.0);
 }
 
 // A body can get as far as its velocity, what gravity and pressure add, and a little more for what others push.
@@ -110,6 +111,7 @@ void RigidSolver::loadBodies(const BodySet& bodies, Crew& crew) {
   });
   bodies_.back() = {};
   onBody_.back() = {0.0, 0.0, 0.0};
+  for (std::size_t k = 0; k < hinged_.size(); ++k) spinBefore_[k] = bodies_[hinged_[k]].w;
 }
 
 Vec2 RigidSolver::accelerationOf(const RigidStep& step, const BodySet& bodies, std::size_t i) const {
@@ -165,10 +167,12 @@ void RigidSolver::solveHinges(const BodySet& bodies, double h, bool last, RigidS
       const double most = hinge.motor->torque * h;
       const double impulse = std::clamp(motorImpulse_[k] + inertia * (hinge.motor->speed - w), -most, most);
       const double change = impulse - motorImpulse_[k];
-      stats.work += change * (w + 0.5 * change / inertia);
       w += change / inertia;
+      // Over the whole sub-step: what a brake takes of a velocity that never became motion is no work.
+      if (last) stats.work += 0.5 * impulse * (spinBefore_[k] + w);
       motorImpulse_[k] = last ? 0.0 : impulse;
     }
+    if (last) spinBefore_[k] = w;
     const Vec2 turned = cross(w, arm);
     const Vec2 impulse = mass.mass * (turned - v);
     stats.impulse += impulse;

@@ -78,6 +78,7 @@ class RigidSolver {
   std::vector<std::array<double, 3>> gravityOf_;  // by block of bodies: impulse x, y, work
   std::vector<std::uint32_t> hinged_;
   std::vector<double> motorImpulse_;           // by hinged body, of the last sub-step
+  std::vector<double> spinBefore_;             // by hinged body, at the start of the sub-step [rad/s]
   std::vector<std::array<double, 3>> onBody_;  // impulse x, y, moment
   std::vector<BodyImpulse> felt_;
   struct FastPair {

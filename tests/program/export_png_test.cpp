@@ -20,10 +20,16 @@ using test::smallScene;
 using test::TemporaryFolder;
 using test::worldOf;
 
+constexpr double kPixels = (1280.0 - 56.0) / 2.0;  // a metre of the small scene, between margins of 28
+
 struct Picture {
   int width = 0, height = 0;
   std::vector<std::uint32_t> pixels;
   std::uint32_t at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)] & 0xFFFFFFu; }
+  /// At a place of the small scene's tank of 2 × 1 m [m], in a picture of 1280 pixels.
+  std::uint32_t atPlace(double x, double y) const {
+    return at(static_cast<int>(28.0 + x * kPixels), static_cast<int>(60.0 + (1.0 - y) * kPixels));
+  }
 };
 
 Picture read(const std::string& file) {
@@ -138,8 +144,7 @@ TEST(ExportPng, shows_the_water_in_the_colour_of_its_speed) {
     TemporaryFolder folder;
     drawPng(folder.file("picture.png"), world, scene);
     const Picture picture = read(folder.file("picture.png"));
-    const double pixels = (1280.0 - 56.0) / 2.0;
-    const double water = 0.8 * 0.5 * pixels * pixels;
+    const double water = 0.8 * 0.5 * kPixels * kPixels;
     const auto seen = static_cast<double>(count(picture, viridis(0.5), 2));
     EXPECT_GT(seen, spacing > 0.02 ? 0.6 * water : 0.97 * water) << spacing;
     EXPECT_LT(seen, (spacing > 0.02 ? 1.0 : 1.03) * water) << spacing;
@@ -159,10 +164,7 @@ TEST(ExportPng, shows_polygons_grey_with_their_holes_open) {
   TemporaryFolder folder;
   drawPng(folder.file("picture.png"), world, scene);
   const Picture picture = read(folder.file("picture.png"));
-  const double pixels = (1280.0 - 56.0) / 2.0;
-  const auto pixel = [&](double x, double y) {
-    return picture.at(static_cast<int>(28.0 + x * pixels), static_cast<int>(60.0 + (1.0 - y) * pixels));
-  };
+  const auto pixel = [&](double x, double y) { return picture.atPlace(x, y); };
   EXPECT_EQ(pixel(0.9, 0.5), 0xFFFFFFu);  // the hole
   EXPECT_EQ(pixel(0.6, 0.5), pixel(1.2, 0.5));
   EXPECT_NE(pixel(0.6, 0.5), 0xFFFFFFu);
@@ -190,10 +192,7 @@ TEST(ExportPng, tells_fixed_scripted_and_free_bodies_apart_and_shows_how_a_free_
   TemporaryFolder folder;
   drawPng(folder.file("picture.png"), world, scene);
   const Picture picture = read(folder.file("picture.png"));
-  const double pixels = (1280.0 - 56.0) / 2.0;
-  const auto pixel = [&](double x, double y) {
-    return picture.at(static_cast<int>(28.0 + x * pixels), static_cast<int>(60.0 + (1.0 - y) * pixels));
-  };
+  const auto pixel = [&](double x, double y) { return picture.atPlace(x, y); };
   EXPECT_NE(pixel(0.35, 0.55), pixel(0.95, 0.55));
   EXPECT_NE(pixel(0.35, 0.55), pixel(1.55, 0.55));
   EXPECT_NE(pixel(0.95, 0.55), pixel(1.55, 0.55));

@@ -41,10 +41,7 @@ TEST(ClosestFeatures, two_corners_name_both_vertices) {
 TEST(ClosestFeatures, random_pairs_agree_with_all_pairs_of_features) {
   RandomStream random(7, 1);
   for (int k = 0; k < 100000; ++k) {
-    const ConvexShape a(roundRing(random, 3 + random.below(12), random.uniform(0.1, 1.0)));
-    const ConvexShape b(roundRing(random, 3 + random.below(12), random.uniform(0.1, 1.0)));
-    const Transform pose = Transform::of(random.uniform(0.0, 4.0) * unit(turnAtRandom(random)), turnAtRandom(random));
-    PairCache cache{random.below(40), random.below(40)};
+    auto [a, b, pose, cache] = randomPair(random, 4.0);
     const ClosestFeatures c = closestFeatures(a, b, pose, cache);
     const RealRing ringA = placed(a.vertices(), {}), ringB = placed(b.vertices(), pose);
     const Real separation = oracleAxis(ringA, ringB).separation;

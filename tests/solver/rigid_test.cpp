@@ -1,3 +1,4 @@
+// Free bodies against closed forms of textbook mechanics: flight, slopes, rolling, pendulums, stacks, sleep.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -7,42 +8,10 @@
 #include <froude/base/archive.h>
 #include <froude/solver/world.h>
 
-#include "support/worlds.h"
+#include "support/rigid_worlds.h"
 
 namespace froude::testing {
 namespace {
-
-constexpr double kG = 9.81;
-
-BodyDef freeBody(const std::string& name, Polygon shape, const Vec2& position) {
-  BodyDef def = body(name, std::move(shape), position);
-  def.motion = Motion::Free;
-  def.restitution = 0.0;
-  return def;
-}
-
-Polygon box(double width, double height) {
-  return Polygon::box({{-0.5 * width, -0.5 * height}, {0.5 * width, 0.5 * height}});
-}
-
-/// A domain of 200 × 200 m, its floor at y = 0.
-WorldDef plain() {
-  WorldDef def;
-  def.domain.box = {{-100.0, 0.0}, {100.0, 200.0}};
-  return def;
-}
-
-/// The floor tilted by `degrees` downhill to the right: gravity is turned instead.
-WorldDef slope(double degrees) {
-  WorldDef def = plain();
-  const double t = degrees * kPi / 180.0;
-  def.gravity = kG * Vec2(std::sin(t), -std::cos(t));
-  return def;
-}
-
-void run(World& world, double until, double dt) {
-  while (world.time() < until - 1e-9) world.step(std::min(dt, until - world.time()));
-}
 
 // Reference values: shared/reference/rigid_analytic.json, closed forms of textbook mechanics, g = 9.81 m/s².
 
@@ -219,137 +188,6 @@ TEST(Rigid, a_pendulum_keeps_its_swing_for_a_hundred_periods) {
   EXPECT_NEAR(late, early, 1e-3 * early) << "the period of a large swing tells its size";
 }
 
-TEST(Rigid, a_cradle_hands_the_blow_on) {
-  for (const int moving : {1, 2}) {
-    WorldDef def = plain();
-    def.gravity = {0.0, 0.0};
-    for (int k = 0; k < 5; ++k) {
-      BodyDef b = freeBody("b" + std::to_string(k), box(0.2, 0.2), {0.2 * k + (k < moving ? -0.05 : 0.0), 50.0});
-      b.restitution = 1.0;
-      b.friction = 0.0;
-      if (k < moving) b.velocity = {1.0, 0.0};
-      def.bodies.push_back(b);
-    }
-    World world(def);
-    run(world, 0.3, 0.002);
-    for (int k = 0; k < 5; ++k) {
-      EXPECT_NEAR(world.body(static_cast<std::size_t>(k)).velocity.x(), k >= 5 - moving ? 1.0 : 0.0, 1e-6) << k;
-    }
-  }
-}
-
-TEST(Rigid, unequal_masses_part_as_momentum_and_energy_say) {
-  for (const auto& [m1, m2, v1, v2] : {std::array{2.0, 1.0, 1.0 / 3.0, 4.0 / 3.0}, std::array{1.0, 3.0, -0.5, 0.5}}) {
-    WorldDef def = plain();
-    def.gravity = {0.0, 0.0};
-    for (int k = 0; k < 2; ++k) {
-      BodyDef b = freeBody("b" + std::to_string(k), box(1.0, 1.0), {1.5 * k, 50.0});
-      b.restitution = 1.0;
-      b.density = k == 0 ? m1 : m2;
-      if (k == 0) b.velocity = {1.0, 0.0};
-      def.bodies.push_back(b);
-    }
-    World world(def);
-    run(world, 1.0, 0.002);
-    EXPECT_NEAR(world.body(0).velocity.x(), v1, 1e-6);
-    EXPECT_NEAR(world.body(1).velocity.x(), v2, 1e-6);
-  }
-}
-
-// A square's corner meets the face of a larger one off its centre: golden impacts, no friction.
-TEST(Rigid, a_corner_meets_a_face_off_centre) {
-  struct Case {
-    double e, vA, wA, vB;
-  };
-  for (const Case& c : {Case{1.0, -0.40839694656488545, 0.8450381679389314, 1.6335877862595418},
-                        Case{0.5, -0.18129770992366412, 0.7087786259541985, 0.7252251908396947},
-                        Case{0.0, 0.04580152671755727, 0.5725190839694656, -0.1832061068702291}}) {
-    WorldDef def = plain();
-    def.gravity = {0.0, 0.0};
-    // B comes from a little farther, turned back by what it turns until then; so does A.
-    const double before = 0.002;
-    BodyDef a = freeBody("A", box(2.0, 2.0), Vec2(0.0, 50.0) - before * Vec2(0.5, 0.0));
-    a.density = 1.0, a.velocity = {0.5, 0.0}, a.spin = 0.3, a.angle = -0.3 * before;
-    BodyDef b = freeBody("B", box(1.0, 1.0), Vec2(1.0 + std::sqrt(0.5), 50.4) - before * Vec2(-2.0, 0.5));
-    b.density = 1.0, b.velocity = {-2.0, 0.5}, b.spin = -1.0, b.angle = 0.25 * kPi + before;
-    for (BodyDef* d : {&a, &b}) d->friction = 0.0, d->restitution = c.e, def.bodies.push_back(*d);
-    World world(def);
-    run(world, 0.004, 0.0001);
-    EXPECT_NEAR(world.body(0).velocity.x(), c.vA, 2e-3);
-    EXPECT_NEAR(world.body(0).spin, c.wA, 4e-3);
-    EXPECT_NEAR(world.body(1).velocity.x(), c.vB, 4e-3);
-    EXPECT_NEAR(world.body(1).velocity.y(), 0.5, 4e-3);
-    const Totals t = world.totals();
-    EXPECT_NEAR(t.momentum.x(), 4.0 * 0.5 - 2.0, 1e-12) << "momentum is kept to rounding";
-    EXPECT_NEAR(t.momentum.y(), 0.5, 1e-12);
-  }
-}
-
-TEST(Rigid, a_disc_hits_the_floor_with_friction) {
-  struct Case {
-    double vx, vy, w, mu, e, vxAfter, vyAfter, wAfter;
-  };
-  for (const Case& c : {Case{3.0, -4.0, 0.0, 0.05, 1.0, 2.6, 4.0, -0.8}, Case{3.0, -4.0, 0.0, 0.5, 1.0, 2.0, 4.0, -2.0},
-                        Case{1.0, -2.0, 5.0, 0.3, 0.6, 0.04, 1.2, 3.08}}) {
-    WorldDef def = plain();
-    def.gravity = {0.0, 0.0};
-    BodyDef d = freeBody("disc", Polygon::regular(720, 1.0), {0.0, 1.01});
-    d.velocity = {c.vx, c.vy}, d.spin = c.w, d.friction = c.mu, d.restitution = c.e;
-    def.bodies.push_back(d);
-    World world(def);
-    run(world, 0.05, 0.0005);
-    EXPECT_NEAR(world.body(0).velocity.x(), c.vxAfter, 0.03);
-    EXPECT_NEAR(world.body(0).velocity.y(), c.vyAfter, 0.03);
-    EXPECT_NEAR(world.body(0).spin, c.wAfter, 0.06);
-  }
-}
-
-TEST(Rigid, a_block_tips_over_from_the_angular_speed_of_the_books_on) {
-  const double least = 0.6528668508453134;  // of a block of 0.5 × 2 m about its lower corner
-  for (const double share : {0.95, 1.05}) {
-    WorldDef def = plain();
-    BodyDef b = freeBody("block", box(0.5, 2.0), {0.0, 1.0});
-    b.friction = 10.0;
-    b.spin = -share * least;
-    b.velocity = cross(b.spin, Vec2(-0.25, 1.0));
-    def.bodies.push_back(b);
-    World world(def);
-    run(world, 4.0, 0.005);
-    const bool lies = std::abs(world.body(0).angle) > 1.0;
-    EXPECT_EQ(lies, share > 1.0) << world.body(0).angle;
-  }
-}
-
-// Housner (1963): the block turns about one lower corner, lands flat, and goes on about the other one.
-TEST(Rigid, a_rocking_block_lands_in_time_and_loses_what_the_landing_takes) {
-  struct Case {
-    double b, h, share, quarter, ratio;  // quarter of the lossless period [s]; angular speed after over before
-  };
-  for (const Case& c : {Case{0.25, 1.0, 0.5, 1.9752128603152932 / 4.0, 0.9117647058823529},
-                        Case{0.25, 1.0, 0.8, 3.4345583932668693 / 4.0, 0.9117647058823529},
-                        Case{0.5, 1.0, 0.5, 2.0665206088711696 / 4.0, 0.7},
-                        Case{0.1, 0.5, 0.8, 2.4150584821530874 / 4.0, 0.9423076923076923}}) {
-    WorldDef def = plain();
-    const double tilt = c.share * std::atan(c.b / c.h);
-    BodyDef block = freeBody("block", box(2.0 * c.b, 2.0 * c.h), Rotation::of(tilt).apply({c.b, c.h}));
-    block.angle = tilt;
-    block.friction = 10.0;
-    def.bodies.push_back(block);
-    World world(def);
-    double before = 0.0, landed = 0.0;
-    while (landed == 0.0 && world.time() < 2.0) {
-      before = world.body(0).spin;
-      const double angle = world.body(0).angle;
-      world.step(0.0005);
-      const double now = world.body(0).angle;
-      if (now <= 1e-9) landed = world.time() - 0.0005 * now / (now - angle);
-    }
-    EXPECT_NEAR(landed, c.quarter, 0.01 * c.quarter) << c.b << " x " << c.h << " at " << c.share;
-    for (int k = 0; k < 4; ++k) world.step(0.0005);
-    EXPECT_NEAR(world.body(0).spin / before, c.ratio, 0.02) << c.b << " x " << c.h << " at " << c.share;
-  }
-}
-
 WorldDef stack(int boxes, double size, double lastDensity) {
   WorldDef def = plain();
   const auto shape = std::make_shared<const Polygon>(box(size, size));
@@ -390,6 +228,47 @@ TEST(Rigid, a_heavy_box_stays_up_on_light_ones) {
   run(world, 20.0, 0.01);
   EXPECT_NEAR(world.body(9).transform.position.y(), 4.75, 0.05);
   EXPECT_NEAR(world.body(9).transform.position.x(), 0.0, 0.01);
+}
+
+// A slab that stands on its end in its own coordinates, 6 m away from its origin.
+TEST(Rigid, the_torque_on_a_fixed_body_is_about_its_centre_of_mass_wherever_its_origin_is) {
+  const double off = 1.2, weight = 1000.0 * 0.5 * 0.5 * kG;
+  WorldDef def = plain();
+  BodyDef slab = body("slab", Polygon::box({{4.0, -7.0}, {4.4, -3.0}}), {20.0, 50.0});
+  slab.angle = 0.5 * kPi;  // its centre of mass comes to (25, 54.2)
+  def.bodies.push_back(slab);
+  def.bodies.push_back(freeBody("box", box(0.5, 0.5), {25.0 + off, 54.65}));
+  World world(def);
+  run(world, 0.45, 0.01);
+  for (const bool asleep : {false, true}) {
+    ASSERT_EQ(world.body(1).asleep, asleep);
+    EXPECT_NEAR(world.body(0).force.y(), -weight, 0.01 * weight) << asleep;
+    EXPECT_NEAR(world.body(0).torque, -off * weight, 0.01 * off * weight) << asleep;
+    EXPECT_NEAR(world.body(1).torque, 0.0, 0.01 * off * weight) << asleep;
+    run(world, 3.0, 0.01);
+  }
+}
+
+// Two descriptions of one motion: the torque is of the body, and not of the point that its script moves.
+TEST(Rigid, the_torque_on_a_scripted_body_does_not_depend_on_its_origin) {
+  const double spin = 4.0, dt = 1.0 / 240.0;
+  const Vec2 away(5.0, 3.0);
+  std::array<double, 2> torque{};
+  for (const bool isAway : {false, true}) {
+    const Vec2 arm = isAway ? away : Vec2(0.0, 0.0);  // from the origin to the centre of mass
+    WorldDef def = plain();
+    BodyDef lever = body("lever", Polygon::box({arm - Vec2(2.0, 0.2), arm + Vec2(2.0, 0.2)}), Vec2(20.0, 50.0) - arm);
+    lever.motion = Motion::Scripted;
+    lever.spin = spin;
+    lever.velocity = cross(spin, Vec2(-arm));
+    def.bodies.push_back(lever);
+    def.bodies.push_back(freeBody("box", box(0.5, 0.5), {21.2, 50.45}));
+    World world(def);
+    world.step(dt);
+    torque[isAway ? 1 : 0] = world.body(0).torque;
+  }
+  EXPECT_LT(torque[0], -1000.0) << "the lever strikes the box";
+  EXPECT_NEAR(torque[1], torque[0], 1e-9 * std::abs(torque[0]));
 }
 
 TEST(Rigid, a_sleeper_wakes_when_it_is_hit) {
@@ -459,6 +338,19 @@ TEST(Rigid, a_motor_turns_as_fast_as_its_torque_allows) {
   EXPECT_NEAR(world.body(0).spin, 100.0 / inertia, 1e-9 * 100.0 / inertia) << "torque over inertia";
   run(world, 20.0, 0.01);
   EXPECT_NEAR(world.body(0).spin, 4.0, 1e-9);
+  const double kinetic = 0.5 * inertia * 16.0;
+  EXPECT_NEAR(world.ledger().work, kinetic, 1e-9 * kinetic) << "all of its work is in the wheel";
+}
+
+TEST(Rigid, a_brake_that_holds_does_no_work) {
+  WorldDef def = plain();
+  BodyDef b = freeBody("flap", box(1.0, 0.1), {0.5, 50.0});
+  b.hinge = HingeDef{{0.0, 50.0}, MotorDef{0.0, 2.0 * 1000.0 * 0.1 * kG * 0.5}};
+  def.bodies.push_back(b);
+  World world(def);
+  run(world, 10.0, 0.01);
+  EXPECT_NEAR(world.body(0).angle, 0.0, 1e-9);
+  EXPECT_NEAR(world.ledger().work, 0.0, 1e-9) << "its weight would turn it by a little in each step, and does not";
 }
 
 TEST(Rigid, overlapping_bodies_are_parted_gently) {

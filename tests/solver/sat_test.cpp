@@ -26,10 +26,7 @@ TEST(Sat, a_small_box_in_a_large_one_leaves_by_the_nearest_side) {
 TEST(Sat, depth_and_axis_of_random_pairs_are_those_of_all_edge_normals) {
   RandomStream random(7, 2);
   for (int k = 0; k < 100000; ++k) {
-    const ConvexShape a(roundRing(random, 3 + random.below(12), random.uniform(0.1, 1.0)));
-    const ConvexShape b(roundRing(random, 3 + random.below(12), random.uniform(0.1, 1.0)));
-    const Transform pose = Transform::of(random.uniform(0.0, 2.5) * unit(turnAtRandom(random)), turnAtRandom(random));
-    PairCache cache{random.below(40), random.below(40)};
+    auto [a, b, pose, cache] = randomPair(random, 2.5);
     const SeparatingAxis axis = sat(a, b, pose, cache);
     const OracleAxis truth = oracleAxis(placed(a.vertices(), {}), placed(b.vertices(), pose));
     if (truth.separation < 0) {

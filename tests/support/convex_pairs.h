@@ -34,6 +34,26 @@ inline std::vector<Vec2> straightRun(std::uint32_t parts) {
   return ring;
 }
 
+/// Two convex polygons of 3 to 14 vertices, B's pose in A's frame, and a cache that may name features they do not have.
+struct RandomPair {
+  ConvexShape a, b;
+  Transform pose;
+  PairCache cache;
+};
+
+inline ConvexShape randomShape(RandomStream& random) {
+  const std::uint32_t vertices = 3 + random.below(12);
+  return ConvexShape(roundRing(random, vertices, random.uniform(0.1, 1.0)));
+}
+
+/// Origins at most `farthest` apart; each polygon is within 1 of its own.
+inline RandomPair randomPair(RandomStream& random, double farthest) {
+  ConvexShape a = randomShape(random), b = randomShape(random);
+  const double distance = random.uniform(0.0, farthest), direction = turnAtRandom(random);
+  const Transform pose = Transform::of(distance * unit(direction), turnAtRandom(random));
+  return {std::move(a), std::move(b), pose, PairCache{random.below(40), random.below(40)}};
+}
+
 inline std::vector<Vec2> scaled(std::vector<Vec2> ring, double by, const Vec2& offset = {0.0, 0.0}) {
   for (Vec2& v : ring) v = by * v + offset;
   return ring;
