@@ -48,4 +48,16 @@ Distance bestShift(const Curve& curve, const Curve& reference, double from, doub
   return best;
 }
 
+double rmsDifference(const Curve& curve, const Curve& reference, double shift) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < reference.t.size(); ++i) {
+    const double difference = curve.at(reference.t[i] - shift) - reference.z[i];
+    if (!std::isfinite(difference)) continue;
+    sum += difference * difference;
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
 }  // namespace froude::validation

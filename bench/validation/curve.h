@@ -30,4 +30,7 @@ struct Distance {
 /// best. Points that the shifted curve does not reach make that shift no candidate; rms is NaN if there is none.
 Distance bestShift(const Curve& curve, const Curve& reference, double from, double to, double most);
 
+/// Rms of z − z_reference over the points of `reference` that the curve, coming later by `shift`, reaches.
+double rmsDifference(const Curve& curve, const Curve& reference, double shift);
+
 }  // namespace froude::validation

@@ -47,6 +47,7 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
   try {
     const scene::Scene scene = scene::load(scenePath(entry.scene), all);
     World world = scene::makeWorld(scene);
+    if (entry.prepare) entry.prepare(world);
     const std::unique_ptr<Measure> measure = entry.measure(scene);
     const std::string trouble = stepToEnd(world, scene, entry.every, *measure, outcome.wall);
     outcome.particles = world.fluid() != nullptr ? world.fluid()->size() : 0;

@@ -48,6 +48,7 @@ struct Case {
   double every = 0.0;    // between readings [s]; 0: every step end
   Form full, quick;
   std::function<std::unique_ptr<Measure>(const scene::Scene&)> measure;
+  std::function<void(World&)> prepare{};  // before t = 0: what a scene cannot say; empty: nothing
 };
 
 /// Of all files in cases/, by name.

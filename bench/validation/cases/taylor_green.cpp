@@ -16,8 +16,7 @@ class Decay final : public Measure {
 
   void read(const World& world) override {
     time_ = world.time();
-    const Totals totals = world.totals(Species::Fluid);
-    kinetic_ = totals.kinetic;
+    kinetic_ = world.totals(Species::Fluid).kinetic;
     if (time_ == 0.0) kinetic0_ = kinetic_;
     error_ = velocityError(*world.fluid(), [&](const Vec2& x) { return exact_(x, time_, viscosity_); });
   }
@@ -34,24 +33,27 @@ class Decay final : public Measure {
   double time_ = 0.0, kinetic0_ = 0.0, kinetic_ = 0.0, error_ = 0.0;
 };
 
-constexpr double kReadEvery = 10.0;  // s: first and last are enough
+constexpr double kReadEvery = 10.0;  // s: the first and the last reading are enough
 
 const Registered kPeriodic{
-    {"taylor_green",
-     "velocities when a tenth of the energy should be left, over the exact ones; the energy's decay rate",
-     "taylor_green",
-     kReadEvery,
-     {{0.04, 0.02, 0.01}, {}},
-     {{0.04}, {{"duration", "0.3"}}},
-     [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); }}};
+    {.name = "taylor_green",
+     .measures =
+         "when a tenth of the energy should be left: difference of the particles' velocities from the exact ones "
+         "(rms, relative); rate of the energy's decay",
+     .scene = "taylor_green",
+     .every = kReadEvery,
+     .full = {{0.04, 0.02, 0.01}, {}},
+     .quick = {{0.04}, {{"duration", "0.3"}}},
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); }}};
 
-const Registered kBox{{"taylor_green_box",
-                       "the same for one vortex between smooth walls",
-                       "taylor_green_box",
-                       kReadEvery,
-                       {{0.02, 0.01, 0.005}, {}},
-                       {{0.02}, {{"duration", "0.3"}}},
-                       [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreenBox); }}};
+const Registered kBox{
+    {.name = "taylor_green_box",
+     .measures = "the same of one vortex between smooth walls",
+     .scene = "taylor_green_box",
+     .every = kReadEvery,
+     .full = {{0.02, 0.01, 0.005}, {}},
+     .quick = {{0.02}, {{"duration", "0.3"}}},
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreenBox); }}};
 
 }  // namespace
 }  // namespace froude::validation
