@@ -11,8 +11,7 @@
 
 namespace froude::validation {
 
-void DamCurve::read(const World& world) {
-  const double t = world.time();
+void DamCurve::read(const World& world, double t) {
   const Moments m = moments(*world.fluid());
   toe.add(t, run::FluidSurface(world).toe());
   centreX.add(t, m.centre.x());

@@ -11,7 +11,7 @@ namespace froude::validation {
 
 struct DamCurve {
   Curve toe, centreX, centreY;  // [m] over [s]
-  void read(const World& world);
+  void read(const World& world, double t);
 };
 
 constexpr double kDamCurveEnd = 2.0;  // [s]

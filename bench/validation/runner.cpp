@@ -11,6 +11,8 @@
 namespace froude::validation {
 namespace {
 
+constexpr double kRounding = 1e-12;  // errors below it have no order
+
 using Clock = std::chrono::steady_clock;
 
 /// Steps to the scene's end; what went wrong in words, or nothing.
@@ -18,7 +20,7 @@ std::string stepToEnd(World& world, const scene::Scene& scene, double every, Mea
   double due = 0.0;
   double lastRead = -1.0;
   const auto readAt = [&](double time) {
-    measure.read(world);
+    measure.read(world, time);
     lastRead = time;
     due = every > 0.0 ? every * (std::floor(time / every * (1.0 + 1e-12)) + 1.0) : 0.0;
   };
@@ -83,7 +85,7 @@ double order(const std::vector<Outcome>& outcomes, const std::string& metric) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (const Outcome& outcome : outcomes) {
     for (const Metric& m : outcome.metrics) {
-      if (m.name != metric) continue;
+      if (m.name != metric || std::abs(m.error) < kRounding || m.target == 0.0) continue;
       const double x = std::log(outcome.spacing), y = std::log(std::abs(m.error));
       n += 1.0;
       sx += x;

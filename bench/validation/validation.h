@@ -28,9 +28,9 @@ struct Metric {
 class Measure {
  public:
   virtual ~Measure() = default;
-  /// At t = 0, at the first step end at or after each multiple of `Case::every`, and at the last step end. The
-  /// reference is to be taken at world.time(): steps are never cut to meet a time.
-  virtual void read(const World& world) = 0;
+  /// At t = 0, at the first step end at or after each multiple of `Case::every`, and at the last step end. t is the
+  /// world's time [s], at which the reference is to be taken: steps are never cut to meet one.
+  virtual void read(const World& world, double t) = 0;
   /// After the last reading, in an order that does not depend on the run.
   virtual std::vector<Metric> results() const = 0;
 };

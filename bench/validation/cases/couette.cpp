@@ -40,8 +40,8 @@ class Ring final : public Measure {
         omega_(scene.world.bodies.at(1).spin),
         rings_(static_cast<int>(std::lround((kOuter - kInner) / scene.world.fluid->spacing))) {}
 
-  void read(const World& world) override {
-    if (world.time() < from_) return;
+  void read(const World& world, double t) override {
+    if (t < from_) return;
     const ParticlePool& pool = *world.fluid();
     const auto radius = [&](std::size_t i) { return std::hypot(pool.x()[i], pool.y()[i]); };
     const auto off = [&](std::size_t i) {

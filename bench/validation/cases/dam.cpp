@@ -13,10 +13,9 @@ constexpr double kVolumeFrom = 3.0;  // s: what fell has come down
 
 class Dam final : public Measure {
  public:
-  void read(const World& world) override {
-    const double t = world.time();
+  void read(const World& world, double t) override {
     if (t == 0.0) area0_ = run::GaugeSet::fluidArea(world);
-    if (t <= kDamCurveEnd + 0.1) curve_.read(world);
+    if (t <= kDamCurveEnd + 0.1) curve_.read(world, t);
     if (t >= kVolumeFrom) {
       volume_ += std::abs(run::volumeError(world, area0_));
       ++count_;

@@ -22,9 +22,9 @@ class Column final : public Measure {
         front_(std::move(front)),
         height_(std::move(height)) {}
 
-  void read(const World& world) override {
+  void read(const World& world, double t) override {
     const run::FluidSurface surface(world);
-    const double T = world.time() * rate_;
+    const double T = t * rate_;
     if (T < front_.t.back() + kLargestShift) toe_.add(T, surface.toe() / a_);
     if (!height_.t.empty())
       top_.add(T / std::sqrt(2.0), surface.height(kHeightColumns * world.definition().fluid->spacing) / (2.0 * a_));

@@ -21,8 +21,7 @@ class Channel final : public Measure {
         exact_(std::move(exact)),
         strips_(static_cast<int>(std::lround(L / scene.world.fluid->spacing))) {}
 
-  void read(const World& world) override {
-    const double t = world.time();
+  void read(const World& world, double t) override {
     if (t == 0.0) return;
     const ParticlePool& pool = *world.fluid();
     const auto y = [&](std::size_t i) { return pool.y()[i]; };

@@ -11,9 +11,9 @@ namespace {
 
 class Patch final : public Measure {
  public:
-  void read(const World& world) override {
+  void read(const World& world, double t) override {
     const Totals totals = world.totals(Species::Fluid);
-    if (world.time() == 0.0) {
+    if (t == 0.0) {
       start_ = totals;
       area0_ = run::GaugeSet::fluidArea(world);
       return;
@@ -31,7 +31,7 @@ class Patch final : public Measure {
   std::vector<Metric> results() const override {
     return {{"angular_momentum", "1", angular_, 0.02},
             {"kinetic_energy", "1", kinetic_, {}},
-            {"area", "1", area_, {}},
+            {"area", "1", area_, 0.02},
             {"nearest_pair", "dx", nearest_, {}},
             {"clumped", "1", close_, {}},
             {"torn_off", "pieces", torn_, 0.0}};

@@ -9,8 +9,8 @@ namespace {
 
 class Shaken final : public Measure {
  public:
-  void read(const World& world) override {
-    if (world.time() == 0.0) {
+  void read(const World& world, double t) override {
+    if (t == 0.0) {
       area0_ = run::GaugeSet::fluidArea(world);
       count0_ = static_cast<double>(world.fluid()->size());
       return;

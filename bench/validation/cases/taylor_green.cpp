@@ -14,8 +14,8 @@ class Decay final : public Measure {
  public:
   Decay(const scene::Scene& scene, Vortices exact) : viscosity_(scene.world.fluid->viscosity), exact_(exact) {}
 
-  void read(const World& world) override {
-    time_ = world.time();
+  void read(const World& world, double t) override {
+    time_ = t;
     kinetic_ = world.totals(Species::Fluid).kinetic;
     if (time_ == 0.0) kinetic0_ = kinetic_;
     error_ = velocityError(*world.fluid(), [&](const Vec2& x) { return exact_(x, time_, viscosity_); });
