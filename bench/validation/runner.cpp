@@ -85,7 +85,7 @@ double order(const std::vector<Outcome>& outcomes, const std::string& metric) {
   double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (const Outcome& outcome : outcomes) {
     for (const Metric& m : outcome.metrics) {
-      if (m.name != metric || std::abs(m.error) < kRounding || m.target == 0.0) continue;
+      if (m.name != metric || std::abs(m.error) < kRounding || !m.converges) continue;
       const double x = std::log(outcome.spacing), y = std::log(std::abs(m.error));
       n += 1.0;
       sx += x;

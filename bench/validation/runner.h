@@ -28,8 +28,8 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
 std::vector<std::string> fluidMethods();
 
 /// Order of convergence of the metric with that name: the slope of log |error| over log spacing, by least squares over
-/// the runs that reached their end. Errors within rounding of 0 do not count, nor do counts (target 0); NaN with fewer
-/// than two.
+/// the runs that reached their end. Errors within rounding of 0 do not count, nor metrics that do not converge; NaN
+/// with fewer than two.
 double order(const std::vector<Outcome>& outcomes, const std::string& metric);
 
 }  // namespace froude::validation

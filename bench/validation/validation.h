@@ -22,6 +22,7 @@ struct Metric {
   std::string unit;              // "1" for a ratio
   double error = 0.0;            // 0 is right; its size is judged, its sign is kept
   std::optional<double> target;  // |error| should stay below
+  bool converges = true;         // false for counts and free parameters: no order is fitted
 };
 
 /// Reads one run. Looks at the world only.

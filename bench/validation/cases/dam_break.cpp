@@ -33,7 +33,7 @@ class Column final : public Measure {
   std::vector<Metric> results() const override {
     const double to = std::min(front_.t.back(), toe_.t.back());
     const Distance front = bestShift(toe_, front_, kFrom, to, kLargestShift);
-    std::vector<Metric> metrics{{"front", "1", front.rms, 0.05}, {"front_shift", "T", front.shift, {}}};
+    std::vector<Metric> metrics{{"front", "1", front.rms, 0.05}, {"front_shift", "T", front.shift, {}, false}};
     if (!height_.t.empty())
       metrics.push_back({"height", "1", rmsDifference(top_, height_, front.shift / std::sqrt(2.0)), 0.05});
     return metrics;

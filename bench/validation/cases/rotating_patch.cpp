@@ -34,7 +34,7 @@ class Patch final : public Measure {
             {"area", "1", area_, 0.02},
             {"nearest_pair", "dx", nearest_, {}},
             {"clumped", "1", close_, {}},
-            {"torn_off", "pieces", torn_, 0.0}};
+            {"torn_off", "pieces", torn_, 0.0, false}};
   }
 
  private:

@@ -23,7 +23,9 @@ class Shaken final : public Measure {
   }
 
   std::vector<Metric> results() const override {
-    return {{"momentum", "1", momentum_, 1e-8}, {"volume", "1", volume_ / count_, 0.01}, {"lost", "1", lost_, 0.0}};
+    return {{"momentum", "1", momentum_, 1e-6, false},
+            {"volume", "1", volume_ / count_, 0.01},
+            {"lost", "1", lost_, 0.0, false}};
   }
 
  private:
