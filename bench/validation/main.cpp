@@ -1,6 +1,6 @@
 // How right is each fluid method, how does that improve with resolution, and what does it cost?
 //
-//   validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--rows FILE] [--list]
+//   validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--limit SECONDS] [--rows FILE] [--list]
 //
 // Runs shipped scenes whose answer is known, at three spacings each (--quick: coarser and shorter), and prints the
 // errors, the order of convergence and the wall time of the steps. Exit codes: 0 all runs were made, whatever their
@@ -23,11 +23,13 @@ using namespace froude;
 using namespace froude::validation;
 
 constexpr const char* kUsage =
-    "usage: validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--rows FILE] [--list]\n"
+    "usage: validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--limit SECONDS] [--rows FILE] "
+    "[--list]\n"
     "  --methods A,B   fluid methods (default: all of this build)\n"
     "  --cases A,B     cases (default: all; --list names them)\n"
     "  --quick         coarser spacings and shorter runs: does everything still work?\n"
     "  --threads N     threads of the steps (default 1)\n"
+    "  --limit SECONDS give a run up whose steps take longer\n"
     "  --rows FILE     append the rows to FILE, CSV\n"
     "  --list          say what there is, and run nothing\n";
 
@@ -35,6 +37,7 @@ struct Options {
   std::vector<std::string> methods, cases;
   bool quick = false, list = false;
   int threads = 1;
+  double limit = kInfinity;  // [s]
   std::string rows;
 };
 
@@ -55,13 +58,18 @@ Options parse(int argc, char** argv) {
       (word == "--quick" ? options.quick : options.list) = true;
       continue;
     }
-    if (word != "--methods" && word != "--cases" && word != "--threads" && word != "--rows")
+    if (word != "--methods" && word != "--cases" && word != "--threads" && word != "--limit" && word != "--rows")
       throw Error("unknown word '" + word + "'");
     if (i + 1 == argc) throw Error(word + " needs a value");
     const std::string value = argv[++i];
     if (word == "--methods") options.methods = words(value);
     if (word == "--cases") options.cases = words(value);
     if (word == "--rows") options.rows = value;
+    if (word == "--limit") {
+      const auto result = std::from_chars(value.data(), value.data() + value.size(), options.limit);
+      if (result.ec != std::errc() || *result.ptr != '\0' || !(options.limit > 0.0))
+        throw Error("--limit " + value + ": seconds above 0 are right");
+    }
     if (word == "--threads") {
       const auto result = std::from_chars(value.data(), value.data() + value.size(), options.threads);
       if (result.ec != std::errc() || *result.ptr != '\0' || options.threads < 1 || options.threads > 1024)
@@ -102,7 +110,8 @@ Series run(const Case& entry, const std::string& method, const Options& options)
                                     static_cast<std::size_t>(options.threads));
   tbb::task_arena arena(options.threads);
   for (const double spacing : form.spacings)
-    series.outcomes.push_back(arena.execute([&] { return runOnce(entry, method, spacing, form.overrides); }));
+    series.outcomes.push_back(
+        arena.execute([&] { return runOnce(entry, method, spacing, form.overrides, options.limit); }));
   return series;
 }
 

@@ -16,7 +16,8 @@ constexpr double kRounding = 1e-12;  // errors below it have no order
 using Clock = std::chrono::steady_clock;
 
 /// Steps to the scene's end; what went wrong in words, or nothing.
-std::string stepToEnd(World& world, const scene::Scene& scene, double every, Measure& measure, double& wall) {
+std::string stepToEnd(World& world, const scene::Scene& scene, double every, double limit, Measure& measure,
+                      double& wall) {
   double due = 0.0;
   double lastRead = -1.0;
   const auto readAt = [&](double time) {
@@ -26,12 +27,15 @@ std::string stepToEnd(World& world, const scene::Scene& scene, double every, Mea
   };
   readAt(0.0);
   while (world.time() < scene.duration * (1.0 - 1e-12)) {
+    const double before = world.time();
     const Clock::time_point start = Clock::now();
     const StepReport report = world.substep();
     wall += std::chrono::duration<double>(Clock::now() - start).count();
     if (!report.ok())
       return fmt::format("unstable: {} {:.3g}, at most {:.3g}, at t = {:.4g} s", name(report.trouble),
                          report.troubleValue, report.troubleLimit, world.time());
+    if (!(world.time() > before)) return fmt::format("unstable: time stands at t = {:.4g} s", before);
+    if (wall > limit) return fmt::format("stopped: took {:.3g} s up to t = {:.4g} s", wall, world.time());
     if (world.time() >= due * (1.0 - 1e-12)) readAt(world.time());
   }
   if (lastRead < world.time()) readAt(world.time());
@@ -41,7 +45,7 @@ std::string stepToEnd(World& world, const scene::Scene& scene, double every, Mea
 }  // namespace
 
 Outcome runOnce(const Case& entry, const std::string& method, double spacing,
-                const std::vector<scene::Override>& overrides) {
+                const std::vector<scene::Override>& overrides, double limit) {
   Outcome outcome;
   outcome.spacing = spacing;
   std::vector<scene::Override> all{{"model.fluid", method}, {"model.spacing", fmt::format("{:.17g}", spacing)}};
@@ -51,7 +55,7 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
     World world = scene::makeWorld(scene);
     if (entry.prepare) entry.prepare(world);
     const std::unique_ptr<Measure> measure = entry.measure(scene);
-    const std::string trouble = stepToEnd(world, scene, entry.every, *measure, outcome.wall);
+    const std::string trouble = stepToEnd(world, scene, entry.every, limit, *measure, outcome.wall);
     outcome.particles = world.fluid() != nullptr ? world.fluid()->size() : 0;
     outcome.ledger = world.ledger();
     outcome.simulated = world.time();

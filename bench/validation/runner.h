@@ -12,7 +12,7 @@ namespace froude::validation {
 struct Outcome {
   double spacing = 0.0;  // [m]
   std::vector<Metric> metrics;
-  std::string state = "done";  // "done", "unstable: …" or "refused: …", in words
+  std::string state = "done";  // "done", "unstable: …", "stopped: …" or "refused: …", in words
   std::size_t particles = 0;
   Ledger ledger;
   double simulated = 0.0;  // [s]
@@ -20,9 +20,10 @@ struct Outcome {
   bool done() const { return state == "done"; }
 };
 
-/// Never throws for what a method does: a run that is refused or goes unstable says so in its state.
+/// Never throws for what a method does: a run that is refused or goes unstable says so in its state, and so does one
+/// whose steps took longer than `limit` [s of wall time].
 Outcome runOnce(const Case& entry, const std::string& method, double spacing,
-                const std::vector<scene::Override>& overrides);
+                const std::vector<scene::Override>& overrides, double limit = kInfinity);
 
 /// Names of the fluid methods that this build can make.
 std::vector<std::string> fluidMethods();

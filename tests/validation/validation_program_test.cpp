@@ -85,6 +85,7 @@ TEST(ValidationProgram, wrong_words_are_refused) {
   EXPECT_EQ(run("--cases nothing_like_it"), 2);
   EXPECT_EQ(run("--methods nothing_like_it"), 2);
   EXPECT_EQ(run("--threads 0"), 2);
+  EXPECT_EQ(run("--limit soon"), 2);
   EXPECT_EQ(run("--rows"), 2);
   EXPECT_EQ(run("--list"), 0);
   EXPECT_EQ(run("--quick --methods pbf --cases drop --rows /nowhere/at/all.csv"), 4);
@@ -113,6 +114,13 @@ TEST(ValidationRunner, a_run_that_goes_unstable_is_a_row_that_says_so) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(cells(lines[0]).size(), cells(csvHead()).size());
   EXPECT_EQ(tableLines(series, context(1)).size(), 1u);
+}
+
+TEST(ValidationRunner, a_run_that_takes_too_long_is_given_up_and_says_so) {
+  const Outcome slow = runOnce(made("dam_speed"), "pbf", 0.1, {}, 1e-9);  // seconds: no step is as fast
+  EXPECT_EQ(slow.state.rfind("stopped: ", 0), 0u) << slow.state;
+  EXPECT_EQ(slow.ledger.substeps, 1u);
+  EXPECT_TRUE(slow.metrics.empty());
 }
 
 TEST(ValidationRunner, a_method_that_cannot_take_a_scene_is_told_in_words) {
