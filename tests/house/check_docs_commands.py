@@ -97,6 +97,8 @@ class Judge:
             return self.execute([sys.executable] + words[1:], expected)
         if program in known:
             return known[program](words)
+        if program in ("validation", "dam_curve"):
+            return self.run_validation(program, words, expected)
         if program.endswith("_bench"):
             return self.missing([f"bench/{program}.cpp"] + [word for word in words[1:] if word.endswith(".toml")])
         return f"the check does not know how to judge '{words[0]}'"
@@ -108,6 +110,13 @@ class Judge:
         if len(words) > 1 and words[1] in ("run", "resume") and "--until" not in words and "--help" not in words:
             words += ["--until", SHORT]
         return self.execute(words, expected)
+
+    def run_validation(self, program, words, expected):
+        """Its words are right, and there are such cases and methods: `--list` says so without running any."""
+        built = os.path.join(self.build, "bin", program)
+        if not os.path.exists(built):
+            return f"there is no {built}"
+        return self.execute([built] + words[1:] + ["--list"], expected) if program == "validation" else None
 
     def execute(self, words, expected):
         try:

@@ -1,0 +1,36 @@
+// Curves over time: published ones read from a table, simulated ones, and how far they are apart.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace froude::validation {
+
+struct Curve {
+  std::vector<double> t, z;  // t grows
+  void add(double time, double value) {
+    t.push_back(time);
+    z.push_back(value);
+  }
+  /// Linear between the points; NaN outside of them.
+  double at(double time) const;
+};
+
+/// Two columns (by index) of a CSV file whose lines of numbers begin with a digit; with `series`, of its lines that
+/// begin with that word and a comma, which is then column 0. Throws Error for a file that cannot be read or has no such
+/// line.
+Curve readCurve(const std::string& file, std::size_t columnT, std::size_t columnZ, const std::string& series = "");
+
+/// How far a curve is from another one's points.
+struct Distance {
+  double rms = 0.0;    // of (z − z_reference)/z_reference
+  double shift = 0.0;  // by which the curve came later
+};
+/// Over the points of `reference` from `from` to `to`, after the one shift 0 ≤ shift ≤ `most` (in hundredths) that fits
+/// best. Points that the shifted curve does not reach make that shift no candidate; rms is NaN if there is none.
+Distance bestShift(const Curve& curve, const Curve& reference, double from, double to, double most);
+
+/// Rms of z − z_reference over the points of `reference` that the curve, coming later by `shift`, reaches.
+double rmsDifference(const Curve& curve, const Curve& reference, double shift);
+
+}  // namespace froude::validation
