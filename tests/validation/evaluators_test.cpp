@@ -188,6 +188,35 @@ TEST(Measures, an_exact_ring_has_no_error_and_is_full) {
   EXPECT_NEAR(area, 0.75 * kPi, 0.002 * 0.75 * kPi);
 }
 
+TEST(Measures, hydrostatic_pressure_has_no_error_and_bodies_that_bear_nothing_have_all_of_it) {
+  Stage stage("hydrostatic");
+  ParticlePool& pool = *stage.world.fluid();
+  const double g = 9.81, level = 0.5 + static_cast<double>(pool.size()) * 0.025 * 0.025 - 0.425;
+  const auto pressure = pool.findColumn<float>("pressure");  // over density
+  ASSERT_TRUE(pressure);
+  for (std::size_t i = 0; i < pool.size(); ++i)
+    pool.column(*pressure)[i] = static_cast<float>(g * (level - pool.y()[i]));
+  const auto drift = [](const Vec2&, double) { return Vec2(0.006, -0.008); };
+  stage.showField(0.0, drift);
+  stage.showField(6.0, drift);
+  for (const char* metric : {"pressure_deep", "pressure_over_step", "pressure_under_lip"})
+    EXPECT_NEAR(stage.error(metric), 0.0, 1e-5) << metric;
+  EXPECT_NEAR(stage.error("mean_speed"), 0.01 / std::sqrt(g * level), 1e-9);
+  EXPECT_NEAR(stage.error("force"), -1.0, 1e-12);
+  EXPECT_EQ(stage.error("volume"), 0.0);
+}
+
+TEST(Measures, a_particle_that_is_gone_from_the_tank_is_missed) {
+  Stage stage("sloshing");
+  stage.measure->read(stage.world, 0.0);
+  stage.measure->read(stage.world, 0.1);
+  EXPECT_EQ(stage.error("lost"), 0.0);
+  stage.world.kill(Species::Fluid, stage.world.fluid()->handleAt(7));
+  stage.measure->read(stage.world, 0.2);
+  EXPECT_NEAR(stage.error("lost"), 1.0 / 480.0, 1e-12);
+  EXPECT_LT(stage.error("volume"), 0.01);
+}
+
 TEST(Measures, an_exact_drop_has_no_error) {
   Stage stage("drop");
   stage.measure->read(stage.world, 0.0);
