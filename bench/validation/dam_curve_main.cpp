@@ -24,7 +24,7 @@ int simulate(const std::string& method, const std::string& spacing, const std::s
   DamCurve curve;
   double due = 0.0;
   for (;;) {
-    if (world.time() >= due) {
+    if (world.time() >= due || world.time() >= kDamCurveEnd) {
       curve.read(world, world.time());
       due = world.time() + kEvery;
     }
