@@ -35,6 +35,22 @@ std::span<const ModelCard> modelCards() {
         "J. Bender et al.: Volume maps. SIGGRAPH MIG 2019 (walls); M. Ferrand et al.: Int. J. Numer. Methods Fluids "
         "71, "
         "2013"}},
+      {"dfsph",
+       "Divergence-free SPH",
+       "incompressible fluid with a free surface, pressures below zero inside it, walls exact for polygons, free-slip "
+       "or no-slip, laminar viscosity",
+       "surface tension; tension at a free surface",
+       {"courant * support / v_max, courant = 0.4 unless set", "0.25 sqrt(support / g)",
+        "dx sqrt(0.15 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.3 for the largest",
+        "0.125 dx^2 / viscosity", "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+       {"rows of particles that a flow shears give way at once: a burst of noise that costs a vortex of 50 spacings a "
+        "fifth of its energy, one of 100 a twentieth",
+        "at most 100 sweeps a step: a fluid hit hard is compressed by a few per cent for some steps"},
+       {"J. Bender, D. Koschier: Divergence-free SPH for incompressible and viscous fluids. IEEE Trans. Vis. Comput. "
+        "Graph. 23(3), 2017",
+        "X. Hu, N. Adams: An incompressible multi-phase SPH method. J. Comput. Phys. 227, 2007",
+        "J. Bonet, T. Lok: Variational and momentum preservation aspects of SPH formulations. Comput. Methods Appl. "
+        "Mech. Eng. 180, 1999"}},
       {"rigid",
        "Rigid bodies",
        "free polygons, concave ones too: contacts with Coulomb friction and Newton's restitution, hinges to the world, "

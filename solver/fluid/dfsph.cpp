@@ -10,14 +10,16 @@ constexpr double kCourant = 0.4;  // of the support radius a sub-step
 constexpr double kTypicalStiffness = 0.15, kLargestStiffness = 0.3;
 constexpr double kSmoothing = 0.03;  // XSPH
 constexpr int kMinSweeps = 2, kMaxSweeps = 100;
-constexpr int kFreshSweeps = 1000;         // where no pressure is known yet
-constexpr double kTolerance = 1e-4;        // mean change of density in a sub-step
-constexpr double kDensityTolerance = 5e-4; // mean compression
+constexpr int kFreshSweeps = 1000;          // where no pressure is known yet
+constexpr double kTolerance = 1e-4;         // mean change of density in a sub-step
+constexpr double kDensityTolerance = 5e-4;  // mean compression
 constexpr int kDensitySweeps = 3;
-constexpr float kShare = 0.5f;  // of a density error that a sweep takes away
-constexpr float kFull = 0.95f;  // density from which a kernel counts as full
-constexpr float kSkew = 0.3f;   // |S + g| from which it does not
-constexpr float kEven = 0.2f;   // share of S by which a particle gives way to an uneven neighbourhood
+constexpr float kShare = 0.5f;    // of a density error that such a sweep takes away
+constexpr float kReturn = 3e-4f;  // share of a density error that the velocities take back in a sub-step
+constexpr float kFull = 0.85f;    // density from which a kernel counts as full
+constexpr float kSkew = 0.3f;     // |S + g| from which it does not
+constexpr float kEven = 0.2f;     // share of S by which a particle gives way to an uneven neighbourhood
+constexpr double kOpen = 2.0;     // times √N particles at a surface make a free surface
 constexpr float kNoFloor = -1e30f;
 
 }  // namespace
@@ -36,14 +38,19 @@ void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
 
 void Dfsph::findArrangement(const StepContext& context, ParticlePool& pool) {
   const std::size_t n = pool.size();
-  for (AlignedArray<float>* a : {&momentXX_, &momentXY_, &momentYY_, &skewX_, &skewY_, &totalX_, &totalY_, &least_,
-                                 &wallGain_}) {
+  for (AlignedArray<float>* a :
+       {&momentXX_, &momentXY_, &momentYY_, &skewX_, &skewY_, &totalX_, &totalY_, &least_, &wallGain_}) {
     a->resize(n);
   }
   place_.resize(n);
+  tense_.resize(n);
   const auto density = pool.column(density_);
-  const MomentLoop loop{walls_.any() ? walls_.lambda() : nullptr, density.data(),  skewX_.data(), skewY_.data(),
-                        diagonal_.data(), {momentXX_.data(), momentXY_.data(), momentYY_.data()}};
+  const MomentLoop loop{walls_.any() ? walls_.lambda() : nullptr,
+                        density.data(),
+                        skewX_.data(),
+                        skewY_.data(),
+                        diagonal_.data(),
+                        {momentXX_.data(), momentXY_.data(), momentYY_.data()}};
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
@@ -54,9 +61,9 @@ void Dfsph::findArrangement(const StepContext& context, ParticlePool& pool) {
     for (std::size_t i = begin; i < end; ++i) {
       const float x = skewX_[i] + (walls ? wallX[i] : 0.0f), y = skewY_[i] + (walls ? wallY[i] : 0.0f);
       const bool full = density[i] > kFull && x * x + y * y < kSkew * kSkew;
-      place_[i] = !full                           ? GradientCorrection::Place::AtSurface
+      place_[i] = !full                       ? GradientCorrection::Place::AtSurface
                   : walls && lambda[i] > 0.0f ? GradientCorrection::Place::AtWall
-                                                  : GradientCorrection::Place::Inside;
+                                              : GradientCorrection::Place::Inside;
     }
   });
   correction_.build(grid_, occupied_, {momentXX_.data(), momentXY_.data(), momentYY_.data()}, place_.data());
@@ -82,6 +89,13 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
   const double way = context.dt / dx_;
   const Matrices<const float> b = correction_.matrices();
   const bool walls = walls_.any();
+  // Only a free surface gives pressures their zero, and so tension a meaning.
+  const double atSurface = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
+    double count = 0.0;
+    for (std::size_t i = begin; i < end; ++i) count += place_[i] == GradientCorrection::Place::AtSurface ? 1.0 : 0.0;
+    return count;
+  });
+  const bool open = atSurface > kOpen * std::sqrt(static_cast<double>(pool.size()));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       totalX_[i] = static_cast<float>(way * vx[i]);
@@ -89,13 +103,20 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
       const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
       least_[i] = surface ? 0.0f : kNoFloor;
       kappa_[i] = std::max(unit * pressure[i], least_[i]);
-      // What has room may be compressed up to its rest density.
-      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : 0.0f;
+      // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
+      // error: more, and a deep fluid bounces. What has room at a surface be compressed up to its rest density.
+      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -kReturn * std::max(0.0f, density[i] - 1.0f);
       // Of the pressure system, (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
       const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
       const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
+      tense_[i] = open && place_[i] == GradientCorrection::Place::Inside && pressure[i] < 0.0f;
       const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
       diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
+      if (tense_[i] != 0) {
+        diagonal_[i] -= 2.0f * (x * x + y * y);
+        skewX_[i] = -skewX_[i];
+        skewY_[i] = -skewY_[i];
+      }
     }
   });
   // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
@@ -143,9 +164,8 @@ void Dfsph::push(const StepContext& context, const float* pressure, float* kappa
 
 // What the displacements add to the densities, on the mean, and the change of κ that takes it away.
 double Dfsph::runDivergence(const StepContext& context) {
-  const PressureUpdate update{target_.data(),  diagonal_.data(),
-                              kappa_.data(),   change_.data(),
-                              static_cast<float>(kRelaxation), least_.data()};
+  const PressureUpdate update{
+      target_.data(), diagonal_.data(), kappa_.data(), change_.data(), static_cast<float>(kRelaxation), least_.data()};
   const DivergenceLoop loop{totalX_.data(),
                             totalY_.data(),
                             correction_.matrices(),
@@ -155,8 +175,8 @@ double Dfsph::runDivergence(const StepContext& context) {
                             update};
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
-  const double sum = sumOverCells(
-      [&](std::size_t begin, std::size_t end) { return loops.divergence(pairs, loop, begin, end); });
+  const double sum =
+      sumOverCells([&](std::size_t begin, std::size_t end) { return loops.divergence(pairs, loop, begin, end); });
   return sum / static_cast<double>(grid_.size());
 }
 
@@ -177,8 +197,42 @@ void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, Step
     bodies_.follow(kappa_.data());
     error = runDivergence(context);
   }
+  giveBack();
   bodies_.settle(kappa_.data());
   stats.sweeps = sweep + 1;
+}
+
+// What particles in tension took for themselves comes back to all of them alike.
+void Dfsph::giveBack() {
+  const Matrices<const float> b = correction_.matrices();
+  struct Part {
+    double x, y, count;
+  };
+  const auto taken = reduceBlocks<Part>(
+      grid_.size(), {0.0, 0.0, 0.0},
+      [&](std::size_t begin, std::size_t end) {
+        Part part{0.0, 0.0, 0.0};
+        for (std::size_t i = begin; i < end; ++i) {
+          if (tense_[i] == 0) continue;
+          const float twice = 2.0f * kappa_[i];
+          part.x -= static_cast<double>(twice * (b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i]));
+          part.y -= static_cast<double>(twice * (b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i]));
+          part.count += 1.0;
+        }
+        return part;
+      },
+      [](const Part& p, const Part& q) {
+        return Part{p.x + q.x, p.y + q.y, p.count + q.count};
+      });
+  if (taken.count == 0.0) return;
+  const auto x = static_cast<float>(taken.x / taken.count), y = static_cast<float>(taken.y / taken.count);
+  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (tense_[i] == 0) continue;
+      shiftX_[i] -= x;
+      shiftY_[i] -= y;
+    }
+  });
 }
 
 // Away from where neighbours are nearer: under negative pressure they would clump.
@@ -188,9 +242,10 @@ void Dfsph::evenOut() {
     for (std::size_t i = begin; i < end; ++i) {
       solvedX_[i] = shiftX_[i];
       solvedY_[i] = shiftY_[i];
-      if (correction_.deep(i)) {
-        shiftX_[i] -= kEven * skewX_[i];
-        shiftY_[i] -= kEven * skewY_[i];
+      if (correction_.deep(i) || tense_[i] != 0) {
+        const float even = tense_[i] != 0 ? -kEven : kEven;
+        shiftX_[i] -= even * skewX_[i];
+        shiftY_[i] -= even * skewY_[i];
       }
       latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(shiftX_[i] * kUnits)));
       latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(shiftY_[i] * kUnits)));

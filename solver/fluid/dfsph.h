@@ -2,8 +2,8 @@
 //
 // Bender & Koschier, "Divergence-free SPH for incompressible and viscous fluids", IEEE Trans. Vis. Comput. Graph. 23
 // (2017), with three changes (docs/decisions/solver-dfsph.md): the solve for densities moves particles and leaves their
-// velocities (Hu & Adams, J. Comput. Phys. 227 (2007)); gradients are corrected (gradient_correction.h); pressures may be
-// negative inside the fluid, so that particles there are also drawn apart evenly (Lind et al., J. Comput. Phys. 231
+// velocities (Hu & Adams, J. Comput. Phys. 227 (2007)); gradients are corrected (gradient_correction.h); pressures may
+// be negative inside the fluid, so that particles there are also drawn apart evenly (Lind et al., J. Comput. Phys. 231
 // (2012)).
 #pragma once
 
@@ -26,15 +26,17 @@ class Dfsph final : public ParticleFluid {
   void solveDensity(const StepContext& context, ParticlePool& pool);
   double runDivergence(const StepContext& context);
   void push(const StepContext& context, const float* pressure, float* kappa);
+  void giveBack();
   void evenOut();
 
   GradientCorrection correction_;
   AlignedArray<GradientCorrection::Place> place_;
   AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the solve
-  AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W
-  AlignedArray<float> totalX_, totalY_;                 // displacement in the sub-step
-  AlignedArray<float> least_;                           // lowest κ: 0 at a surface, else none
-  AlignedArray<float> wallGain_;                        // what the walls' own motion adds to λ
+  AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W; −S of particles in tension
+  AlignedArray<std::uint8_t> tense_;
+  AlignedArray<float> totalX_, totalY_;  // displacement in the sub-step
+  AlignedArray<float> least_;            // lowest κ: 0 at a surface, else none
+  AlignedArray<float> wallGain_;         // what the walls' own motion adds to λ
 };
 
 }  // namespace froude

@@ -7,6 +7,7 @@ namespace {
 
 constexpr float kUsual = 1.05f;       // B where M is not used: the inverse of its mean over a fluid at rest
 constexpr float kLeastMoment = 0.5f;  // determinant; below, the mean is of too few
+constexpr std::int32_t kReach = 2;    // cells on each side over which M is averaged
 constexpr std::size_t kBlock = 128;   // cells a task
 
 }  // namespace
@@ -16,14 +17,14 @@ GradientCorrection::Sum GradientCorrection::around(const GridFrame& frame, std::
   const auto cy = static_cast<std::int32_t>(cell / static_cast<std::uint32_t>(frame.nx));
   auto wrapped = [](std::int32_t k, std::int32_t n, bool periodic) { return periodic ? (k + n) % n : k; };
   Sum sum;
-  for (std::int32_t y = cy - 1; y <= cy + 1; ++y) {
+  for (std::int32_t y = cy - kReach; y <= cy + kReach; ++y) {
     const std::int32_t row = wrapped(y, frame.ny, frame.periodicY);
     if (row < 0 || row >= frame.ny) continue;
-    for (std::int32_t x = cx - 1; x <= cx + 1; ++x) {
+    for (std::int32_t x = cx - kReach; x <= cx + kReach; ++x) {
       const std::int32_t column = wrapped(x, frame.nx, frame.periodicX);
       if (column < 0 || column >= frame.nx) continue;
-      const Sum& other = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.nx) +
-                                static_cast<std::size_t>(column)];
+      const Sum& other =
+          cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.nx) + static_cast<std::size_t>(column)];
       sum.xx += other.xx;
       sum.xy += other.xy;
       sum.yy += other.yy;

@@ -3,8 +3,8 @@
 // Pair forces (pᵢ + pⱼ)∇W make particles in rows an elastic solid: sheared, they push back with up to a third of their
 // pressure, and a vortex turns round like a spring. With B = M⁻¹, M = −Σ r ⊗ ∇W, in (pᵢBᵢ + pⱼBⱼ)∇W the stress of a
 // sheared row is the pressure alone, and momentum is still kept (Bonet & Lok, Comput. Methods Appl. Mech. Eng. 180
-// (1999)). But with a B of its own for each particle there is no arrangement at which a fluid could rest: it simmers at 2 %
-// of √(gH). So M is averaged over 3 × 3 cells, about 40 particles: sheared rows are the same there, noise is not.
+// (1999)). But with a B of its own for each particle there is no arrangement at which a fluid could rest: it simmers at
+// 2 % of √(gH). So M is averaged over 5 × 5 cells, about 110 particles: sheared rows are the same there, noise is not.
 #pragma once
 
 #include <cstdint>

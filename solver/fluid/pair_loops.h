@@ -46,9 +46,9 @@ struct PairFrame {
   HiddenPairs hidden;
 };
 
-/// One Jacobi sweep in the wake of the densities: change = max(least − κ, relaxation·(density − target)/diagonal), the paper's
-/// λ (eq. 11) as a correction of what is there already. A target of 0 marks a particle that is new: what it finds, at
-/// least the rest density, is what it may keep. An over-dense start is thus no push.
+/// One Jacobi sweep in the wake of the densities: change = max(least − κ, relaxation·(density − target)/diagonal), the
+/// paper's λ (eq. 11) as a correction of what is there already. A target of 0 marks a particle that is new: what it
+/// finds, at least the rest density, is what it may keep. An over-dense start is thus no push.
 struct PressureUpdate {
   float* target = nullptr;          // null: no update
   const float* diagonal = nullptr;  // null: the one computed in the same loop
@@ -90,13 +90,13 @@ struct MomentLoop {
   Matrices<float> moment;
 };
 
-/// What displacements u add to the densities, to first order: Σ (uᵢ − uⱼ)·Bᵢ∇W + u·g + λ', λ' what the walls' own motion
-/// adds to λ. The excess of a particle whose κ may be negative counts either way.
+/// What displacements u add to the densities, to first order: Σ (uᵢ − uⱼ)·Bᵢ∇W + u·g + λ', λ' what the walls' own
+/// motion adds to λ. The excess of a particle whose κ may be negative counts either way.
 struct DivergenceLoop {
   const float* ux = nullptr;  // [dx]
   const float* uy = nullptr;
   Matrices<const float> correction;  // B
-  const float* wallX = nullptr;  // null: no walls near any particle
+  const float* wallX = nullptr;      // null: no walls near any particle
   const float* wallY = nullptr;
   const float* wallGain = nullptr;  // λ'
   PressureUpdate update{};

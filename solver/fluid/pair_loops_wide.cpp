@@ -211,8 +211,8 @@ HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uin
 
 // The particles of cells [begin, end). For each, add(m, dx, dy, own, other, sums) over vectors of candidates: dx, dy in
 // half spacings from candidate to particle, m = max(0, 1 − q²/4), 0 in lanes without a visible neighbour, own and other
-// the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums of up to kLanes
-// particles from i on, one a lane.
+// the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums
+// of up to kLanes particles from i on, one a lane.
 template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
 HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
                            const Add& add, const Finish& finish) {

@@ -296,7 +296,8 @@ void ParticleFluid::judgeDensity(const StepContext& context, ParticlePool& pool,
   largestPressure_ = static_cast<double>(all.pressure);
 }
 
-void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
+void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses,
+                                    StepStats& stats) {
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const DiscContact point{0.0, 0.0, 0.0, filter(), true};
   const double dt = context.dt, rate = 1.0 / dt;

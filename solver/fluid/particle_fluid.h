@@ -56,10 +56,10 @@ class ParticleFluid : public FluidModel {
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
 
-  static constexpr float kNever = 1e6f;                 // density at which a film bears
-  static constexpr std::size_t kCellBlock = 128;        // cells a task, about 500 particles
-  static constexpr float kLoose = 0.02f;                // below 1 − this a particle is free to be compressed
-  static constexpr double kRelaxation = 0.6;            // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
+  static constexpr float kNever = 1e6f;           // density at which a film bears
+  static constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
+  static constexpr float kLoose = 0.02f;          // below 1 − this a particle is free to be compressed
+  static constexpr double kRelaxation = 0.6;      // of a Jacobi sweep; its spectral radius is 2.5 (walls included)
 
   FluidDef def_;
   DomainDef domain_;
