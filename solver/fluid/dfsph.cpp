@@ -12,14 +12,15 @@ constexpr double kSmoothing = 0.03;  // XSPH
 constexpr int kMinSweeps = 2, kMaxSweeps = 100;
 constexpr int kFreshSweeps = 1000;          // where no pressure is known yet
 constexpr double kTolerance = 1e-4;         // mean change of density in a sub-step
-constexpr double kDensityTolerance = 5e-4;  // mean compression
-constexpr int kDensitySweeps = 3;
-constexpr float kShare = 0.5f;    // of a density error that such a sweep takes away
-constexpr float kReturn = 3e-4f;  // share of a density error that the velocities take back in a sub-step
-constexpr float kFull = 0.85f;    // density from which a kernel counts as full
-constexpr float kSkew = 0.3f;     // |S + g| from which it does not
-constexpr float kEven = 0.2f;     // share of S by which a particle gives way to an uneven neighbourhood
-constexpr double kOpen = 2.0;     // times √N particles at a surface make a free surface
+constexpr double kDensityTolerance = 2e-4;  // mean compression
+constexpr int kDensitySweeps = 5;
+constexpr float kStep = 0.8f, kMomentum = 0.4f;  // of a sweep; the spectral radius is 2.5 (walls included)
+constexpr float kShare = 0.5f;                   // of a density error that such a sweep takes away
+constexpr float kReturn = 3e-4f;                 // share of a density error that the velocities take back in a sub-step
+constexpr float kFull = 0.85f;                   // density from which a kernel counts as full
+constexpr float kSkew = 0.3f;                    // |S + g| from which it does not
+constexpr float kEven = 0.2f;                    // share of S by which a particle gives way to an uneven neighbourhood
+constexpr double kOpen = 2.0;                    // times √N particles at a surface make a free surface
 constexpr float kNoFloor = -1e30f;
 
 }  // namespace
@@ -164,8 +165,8 @@ void Dfsph::push(const StepContext& context, const float* pressure, float* kappa
 
 // What the displacements add to the densities, on the mean, and the change of κ that takes it away.
 double Dfsph::runDivergence(const StepContext& context) {
-  const PressureUpdate update{
-      target_.data(), diagonal_.data(), kappa_.data(), change_.data(), static_cast<float>(kRelaxation), least_.data()};
+  const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
+                              kStep,          least_.data(),    kMomentum};
   const DivergenceLoop loop{totalX_.data(),
                             totalY_.data(),
                             correction_.matrices(),
@@ -186,6 +187,7 @@ void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, Step
   const int most = fresh ? kFreshSweeps : kMaxSweeps;
   bodies_.startFrom({wallGain_.data(), pool.size()});
   bodies_.holdBack(diagonal_.data());
+  std::fill(change_.begin(), change_.end(), 0.0f);
   double error = runDivergence(context);
   int sweep = 0;
   auto solved = [&] {

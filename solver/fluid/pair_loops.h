@@ -56,6 +56,7 @@ struct PressureUpdate {
   float* change = nullptr;
   float relaxation = 0.0f;
   const float* least = nullptr;  // κ may not fall below; null: 0
+  float momentum = 0.0f;         // of the last change that goes into this one (heavy ball, Polyak 1964)
 };
 
 /// Density at the present coordinates: density = Σ W + λ + g·s, s the displacement since the walls were integrated.

@@ -50,7 +50,8 @@ constexpr auto kTail = static_cast<float>(kernel::kTail);
 double updatePressure(const PressureUpdate& update, std::uint32_t i, float density, float diagonal) {
   const float gain = density - update.target[i];
   const float least = update.least != nullptr ? update.least[i] : 0.0f;
-  const float step = update.relaxation * gain / std::max(diagonal, kSmallestDiagonal);
+  float step = update.relaxation * gain / std::max(diagonal, kSmallestDiagonal);
+  if (update.momentum > 0.0f) step += update.momentum * update.change[i];
   update.change[i] = std::max(least - update.kappa[i], step);
   return static_cast<double>(std::max(gain, least < 0.0f ? -gain : 0.0f));
 }

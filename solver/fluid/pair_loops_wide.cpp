@@ -295,8 +295,10 @@ HWY_INLINE void changePressure(const PressureUpdate& update, std::uint32_t i, st
                                VF& excess) {
   const F f;
   const VF least = update.least != nullptr ? loadSome(update.least + i, count) : hn::Zero(f);
-  const VF step =
-      hn::Div(hn::Mul(hn::Set(f, update.relaxation), gain), hn::Max(diagonal, hn::Set(f, kSmallestDiagonal)));
+  VF step = hn::Div(hn::Mul(hn::Set(f, update.relaxation), gain), hn::Max(diagonal, hn::Set(f, kSmallestDiagonal)));
+  if (update.momentum > 0.0f) {
+    step = hn::MulAdd(hn::Set(f, update.momentum), loadSome(update.change + i, count), step);
+  }
   storeSome(hn::Max(hn::Sub(least, loadSome(update.kappa + i, count)), step), update.change + i, count);
   const VF lack = hn::IfThenElseZero(hn::Lt(least, hn::Zero(f)), hn::Neg(gain));
   excess = hn::Add(excess, hn::IfThenElseZero(hn::FirstN(f, count), hn::Max(gain, lack)));
