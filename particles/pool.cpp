@@ -45,9 +45,9 @@ std::uint32_t ParticlePool::addColumn(std::string_view name, ColumnKind kind, Co
                       "' already; use findColumn to share it, or choose another name");
     }
   }
-  Column column{{std::string(name), kind, type, elementSize}, {}, {}};
+  Column column{{std::string(name), kind, type, elementSize}, {}};
   column.data.resize(rows_ * elementSize);
-  if (kind == ColumnKind::State) column.spare.resize(rows_ * elementSize);
+  if (kind == ColumnKind::State) spareOf(elementSize).resize(rows_ * elementSize);
   columns_.push_back(std::move(column));
   return static_cast<std::uint32_t>(columns_.size() - 1);
 }
@@ -66,15 +66,11 @@ std::span<const std::byte> ParticlePool::columnBytes(std::size_t index) const {
 
 // Reserves everywhere before it resizes anywhere, so that a lack of memory leaves the pool as it was.
 void ParticlePool::sizeColumns(std::size_t rows) {
-  for (Column& c : columns_) {
-    c.data.reserve(rows * c.info.elementSize);
-    if (c.info.kind == ColumnKind::State) c.spare.reserve(rows * c.info.elementSize);
-  }
+  for (Column& c : columns_) c.data.reserve(rows * c.info.elementSize);
+  for (Spare& spare : spares_) spare.data.reserve(rows * spare.elementSize);
   survivors_.reserve(rows);
-  for (Column& c : columns_) {
-    c.data.resize(rows * c.info.elementSize);
-    if (c.info.kind == ColumnKind::State) c.spare.resize(rows * c.info.elementSize);
-  }
+  for (Column& c : columns_) c.data.resize(rows * c.info.elementSize);
+  for (Spare& spare : spares_) spare.data.resize(rows * spare.elementSize);
   survivors_.resize(rows);
   rows_ = rows;
 }
@@ -204,18 +200,25 @@ std::size_t ParticlePool::compact() {
 
 void ParticlePool::permute(std::span<const std::uint32_t> order) {
   FROUDE_ASSERT(order.size() == size_);
-  const std::size_t slotColumn = kSlot.index;
+  for (Column& c : columns_) {
+    if (c.info.kind != ColumnKind::State) continue;
+    AlignedArray<std::byte>& spare = spareOf(c.info.elementSize);
+    parallelFor(size_, [&](std::size_t begin, std::size_t end) {
+      gather(c.info.elementSize, spare.data(), c.data.data(), order, begin, end);
+    });
+    c.data.swap(spare);
+  }
+  const std::span<const std::uint32_t> slot = slots();
   parallelFor(size_, [&](std::size_t begin, std::size_t end) {
-    for (Column& c : columns_) {
-      if (c.info.kind != ColumnKind::State) continue;
-      gather(c.info.elementSize, c.spare.data(), c.data.data(), order, begin, end);
-    }
-    const auto* slot = reinterpret_cast<const std::uint32_t*>(columns_[slotColumn].spare.data());
     for (std::size_t i = begin; i < end; ++i) indexOfSlot_[slot[i]] = static_cast<std::uint32_t>(i);
   });
-  for (Column& c : columns_) {
-    if (c.info.kind == ColumnKind::State) c.data.swap(c.spare);
+}
+
+AlignedArray<std::byte>& ParticlePool::spareOf(std::size_t elementSize) {
+  for (Spare& spare : spares_) {
+    if (spare.elementSize == elementSize) return spare.data;
   }
+  return spares_.emplace_back(Spare{elementSize, {}}).data;
 }
 
 std::size_t ParticlePool::purge() {
@@ -228,9 +231,10 @@ std::size_t ParticlePool::purge() {
   for (Column& c : columns_) {
     c.data.resize(rows * c.info.elementSize);
     c.data.shrink();
-    if (c.info.kind != ColumnKind::State) continue;
-    c.spare.resize(rows * c.info.elementSize);
-    c.spare.shrink();
+  }
+  for (Spare& spare : spares_) {
+    spare.data.resize(rows * spare.elementSize);
+    spare.data.shrink();
   }
   survivors_.resize(rows);
   survivors_.shrink();
@@ -279,7 +283,8 @@ void ParticlePool::archive(Archive& archive) {
 std::size_t ParticlePool::memoryBytes() const {
   std::size_t bytes = table_.memoryBytes();
   bytes += (indexOfSlot_.capacity() + survivors_.capacity()) * sizeof(std::uint32_t);
-  for (const Column& c : columns_) bytes += c.data.capacity() + c.spare.capacity();
+  for (const Column& c : columns_) bytes += c.data.capacity();
+  for (const Spare& spare : spares_) bytes += spare.data.capacity();
   return bytes;
 }
 

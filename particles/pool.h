@@ -150,7 +150,7 @@ class FROUDE_API ParticlePool {
  private:
   struct Column {
     ColumnInfo info;
-    AlignedArray<std::byte> data, spare;  ///< spare: the other half of permute's double buffer, State only
+    AlignedArray<std::byte> data;
   };
   static constexpr ColumnId<double> kX{0}, kY{1}, kVx{2}, kVy{3};
   static constexpr ColumnId<std::uint32_t> kSlot{4};
@@ -175,11 +175,18 @@ class FROUDE_API ParticlePool {
   void removeAt(std::uint32_t index);
   void growTo(std::size_t capacity);
   void sizeColumns(std::size_t rows);
+  AlignedArray<std::byte>& spareOf(std::size_t elementSize);
 
   PoolSettings settings_;
   PoolCounters counters_;
   SlotTable table_;
   std::vector<Column> columns_;
+  /// The other half of permute's double buffer: one for each size of an element, handed from column to column.
+  struct Spare {
+    std::size_t elementSize;
+    AlignedArray<std::byte> data;
+  };
+  std::vector<Spare> spares_;
   AlignedArray<std::uint32_t> indexOfSlot_;
   AlignedArray<std::uint32_t> survivors_;  ///< work space of compact
   std::size_t size_ = 0;

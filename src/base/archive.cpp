@@ -7,7 +7,12 @@ namespace froude {
 void MemorySnapshot::Writer::bytes(std::string_view, void* data, std::size_t elementSize, std::size_t n) {
   const std::size_t size = elementSize * n;
   AlignedArray<std::byte>& buffer = snapshot_.buffer_;
-  if (buffer.size() < snapshot_.used_ + size) buffer.resize(snapshot_.used_ + size);
+  const std::size_t needed = snapshot_.used_ + size;
+  if (buffer.size() < needed) {
+    // A little more than now, not twice as much: a state grows by few particles, and is most of what a world holds.
+    if (buffer.capacity() < needed) buffer.reserve(needed + needed / 8);
+    buffer.resize(needed);
+  }
   if (size > 0) std::memcpy(buffer.data() + snapshot_.used_, data, size);
   snapshot_.used_ += size;
 }
