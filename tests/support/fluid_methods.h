@@ -17,6 +17,8 @@ class FluidMethod : public ::testing::TestWithParam<const char*> {
     def.fluid->model = GetParam();
     return def;
   }
+  /// For what one method does better than the others.
+  static bool pbf() { return GetParam() == std::string("pbf"); }
 };
 
 inline const auto kFluidMethods = ::testing::Values("pbf", "dfsph");
