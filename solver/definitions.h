@@ -100,7 +100,7 @@ struct FluidDef {
   double viscosity = 1.0e-6;      // kinematic [m²/s]
   double surfaceTension = 0.0;    // [N]
   double contactAngle = kPi / 2;  // [rad]
-  int sweeps = 0;                 // pbf: pressure sweeps a sub-step; 0: the model's default
+  int sweeps = 0;                 // pressure sweeps a sub-step; 0: the model's default
   double courant = 0.0;           // largest v·dt/support radius; 0: the model's default
   std::uint32_t group = 1, collidesWith = ~0u;
 };

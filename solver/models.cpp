@@ -39,13 +39,15 @@ std::span<const ModelCard> modelCards() {
        "Divergence-free SPH",
        "incompressible fluid with a free surface, pressures below zero inside it, walls exact for polygons, free-slip "
        "or no-slip, laminar viscosity",
-       "surface tension; tension at a free surface",
+       "surface tension; tension at a free surface or a wall",
        {"courant * support / v_max, courant = 0.4 unless set", "0.25 sqrt(support / g)",
         "dx sqrt(0.15 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.3 for the largest",
         "0.125 dx^2 / viscosity", "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"rows of particles that a flow shears give way at once: a burst of noise that costs a vortex of 50 spacings a "
         "fifth of its energy, one of 100 a twentieth",
-        "at most 100 sweeps a step: a fluid hit hard is compressed by a few per cent for some steps"},
+        "at most 100 sweeps a step: a fluid hit hard is compressed by a few per cent for some steps",
+        "on sub-steps far shorter than the bounds ask for, velocities are less exact, not more",
+        "around corners a fluid simmers: single particles at up to a fifth of sqrt(g depth), at needles a third"},
        {"J. Bender, D. Koschier: Divergence-free SPH for incompressible and viscous fluids. IEEE Trans. Vis. Comput. "
         "Graph. 23(3), 2017",
         "X. Hu, N. Adams: An incompressible multi-phase SPH method. J. Comput. Phys. 227, 2007",

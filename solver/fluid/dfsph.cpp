@@ -102,7 +102,8 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
       totalX_[i] = static_cast<float>(way * vx[i]);
       totalY_[i] = static_cast<float>(way * vy[i]);
       const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
-      least_[i] = surface ? 0.0f : kNoFloor;
+      // Nothing hangs on a wall either: drawn into it, particles of a full closed tank burst.
+      least_[i] = place_[i] == GradientCorrection::Place::Inside ? kNoFloor : 0.0f;
       kappa_[i] = std::max(unit * pressure[i], least_[i]);
       // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
       // error: more, and a deep fluid bounces. What has room at a surface be compressed up to its rest density.

@@ -35,7 +35,7 @@ class Dfsph final : public ParticleFluid {
   AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W; −S of particles in tension
   AlignedArray<std::uint8_t> tense_;
   AlignedArray<float> totalX_, totalY_;  // displacement in the sub-step
-  AlignedArray<float> least_;            // lowest κ: 0 at a surface, else none
+  AlignedArray<float> least_;            // lowest κ: none inside, else 0
   AlignedArray<float> wallGain_;         // what the walls' own motion adds to λ
 };
 

@@ -94,9 +94,8 @@ TEST(SceneRefusal, the_domain) {
 TEST(SceneRefusal, the_model_and_the_fluid) {
   expectRefusals({
       {kHead + "[model]\nfluid = \"pfb\"\n", "6:9: model.fluid: is \"pfb\"", "\"pbf\""},
-      {kHead + "[model]\nfluid = \"dfsph\"\n", "6:9: model.fluid: \"dfsph\" is not in this version",
-       "this build has: pbf"},
-      {kHead + "[model]\nfluid = \"wcsph\"\n", "6:9: model.fluid: \"wcsph\" is not in this version", "pbf"},
+      {kHead + "[model]\nfluid = \"wcsph\"\n", "6:9: model.fluid: \"wcsph\" is not in this version",
+       "this build has: pbf, dfsph"},
       {kHead + "[model]\nfluid = \"apic\"\n", "6:9: model.fluid: \"apic\" is not in this version", "pbf"},
       {kHead + "[model]\ntime_step = 0.0\n", "6:13: model.time_step: is 0", "above 0"},
       {kHead + "[model]\ntime_step = -1e-3\n", "6:13: model.time_step: is -0.001", "above 0"},

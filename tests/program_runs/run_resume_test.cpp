@@ -45,9 +45,12 @@ class Resume : public ProgramTest {
 };
 
 TEST_F(Resume, a_run_stopped_at_several_times_is_as_if_it_had_never_stopped) {
-  for (const std::string& scene : {tinyScene(), mixedScene()}) {
+  for (const auto& [scene, method] :
+       {std::pair{tinyScene(), "pbf"}, std::pair{mixedScene(), "pbf"}, std::pair{mixedScene(), "dfsph"}}) {
     write("s.toml", scene);
-    const Words words{"--frames", "png,h5", "--set", "output.png={width = 160}", "--force"};
+    const Words words{
+        "--frames", "png,h5", "--set", "output.png={width = 160}", "--set", std::string("model.fluid=") + method,
+        "--force"};
     hashOfRun("s.toml", "straight", words);
     Words first = words;
     first.insert(first.end(), {"--until", "0.013"});

@@ -12,10 +12,17 @@ using SameBits = ProgramTest;
 
 TEST_F(SameBits, on_any_number_of_threads) {
   write("s.toml", mixedScene());
-  const std::string hash = hashOfRun("s.toml", "t1", {"--threads", "1"});
-  EXPECT_EQ(hash.size(), 16u);
-  for (const char* threads : {"1", "2", "3", "7"}) {
-    EXPECT_EQ(hashOfRun("s.toml", std::string("again") + threads, {"--threads", threads}), hash) << threads;
+  std::string other;
+  for (const std::string method : {"pbf", "dfsph"}) {
+    const std::string model = "model.fluid=" + method;
+    const std::string hash = hashOfRun("s.toml", method, {"--threads", "1", "--set", model});
+    EXPECT_EQ(hash.size(), 16u);
+    EXPECT_NE(hash, other) << "methods differ";
+    other = hash;
+    for (const char* threads : {"1", "2", "3", "7"}) {
+      EXPECT_EQ(hashOfRun("s.toml", method + threads, {"--threads", threads, "--set", model}), hash)
+          << model << threads;
+    }
   }
 }
 

@@ -1,15 +1,15 @@
 // Walls to which the fluid sticks, against exact flows between plates.
 #include <gtest/gtest.h>
 
-#include <froude/solver/world.h>
+#include "support/fluid_methods.h"
 
-namespace froude {
+namespace froude::testing {
 namespace {
 
 constexpr double kHeight = 1.0, kViscosity = 0.1;  // m, m²/s
 
 // A channel of 20 spacings between y = 0 and y = 1, periodic along x, without gravity across it.
-WorldDef channel() {
+WorldDef channel(const std::string& method) {
   WorldDef def;
   def.domain.box = {{0.0, 0.0}, {1.0, kHeight}};
   def.domain.periodicX = true;
@@ -17,12 +17,13 @@ WorldDef channel() {
   def.domain.slip = Slip::NoSlip;
   def.gravity = {0.0, 0.0};
   def.fluid = FluidDef{};
+  def.fluid->model = method;
   def.fluid->spacing = 0.05;
   def.fluid->viscosity = kViscosity;
   return def;
 }
 
-void fill(World& world, double height) {
+void fillChannel(World& world, double height) {
   std::vector<Vec2> positions;
   const double dx = world.definition().fluid->spacing;
   for (double y = 0.5 * dx; y < height; y += dx) {
@@ -61,12 +62,15 @@ double couette(double y, double t, double speed) {
   return u;
 }
 
-TEST(NoSlip, a_flow_driven_between_plates_takes_the_parabola) {
+class NoSlip : public FluidMethod {};
+INSTANTIATE_TEST_SUITE_P(Each, NoSlip, kFluidMethods, methodName);
+
+TEST_P(NoSlip, a_flow_driven_between_plates_takes_the_parabola) {
   const double force = 0.08, largest = force * kHeight * kHeight / (8.0 * kViscosity);  // 0.1 m/s: Re = 1
-  WorldDef def = channel();
+  WorldDef def = channel(GetParam());
   def.gravity = {force, 0.0};
   World world(def);
-  fill(world, kHeight);
+  fillChannel(world, kHeight);
   for (const double time : {0.5, 2.0, 8.0}) {  // t ν/L² = 0.05, 0.2, 0.8
     ASSERT_TRUE(world.step(time - world.time()).ok());
     EXPECT_LT(largestError(world, [&](double y) { return poiseuille(y, time, force); }), 0.04 * largest) << time;
@@ -75,9 +79,9 @@ TEST(NoSlip, a_flow_driven_between_plates_takes_the_parabola) {
   EXPECT_EQ(world.ledger().leaks, 0u);
 }
 
-TEST(NoSlip, a_belt_drags_the_fluid_along_and_feels_the_shear) {
+TEST_P(NoSlip, a_belt_drags_the_fluid_along_and_feels_the_shear) {
   const double speed = 0.1;
-  WorldDef def = channel();
+  WorldDef def = channel(GetParam());
   def.domain.box.max.y() = 1.4;
   BodyDef belt;
   belt.name = "belt";
@@ -87,7 +91,7 @@ TEST(NoSlip, a_belt_drags_the_fluid_along_and_feels_the_shear) {
   belt.surfaceVelocity = speed;
   def.bodies.push_back(belt);
   World world(def);
-  fill(world, kHeight);
+  fillChannel(world, kHeight);
   for (const double time : {0.5, 2.0, 8.0}) {
     ASSERT_TRUE(world.step(time - world.time()).ok());
     EXPECT_LT(largestError(world, [&](double y) { return couette(y, time, speed); }), 0.04 * speed) << time;
@@ -96,16 +100,16 @@ TEST(NoSlip, a_belt_drags_the_fluid_along_and_feels_the_shear) {
   EXPECT_NEAR(world.body(0).force.x(), -shear, 0.05 * shear);
 }
 
-TEST(NoSlip, a_free_wall_beside_it_lets_the_fluid_slide) {
-  WorldDef def = channel();
+TEST_P(NoSlip, a_free_wall_beside_it_lets_the_fluid_slide) {
+  WorldDef def = channel(GetParam());
   def.domain.slip = Slip::Free;
   def.gravity = {0.08, 0.0};
   World world(def);
-  fill(world, kHeight);
+  fillChannel(world, kHeight);
   const StepReport report = world.step(1.0);
   ASSERT_TRUE(report.ok()) << name(report.trouble) << " " << report.troubleValue << " at " << world.time();
   EXPECT_LT(largestError(world, [](double) { return 0.08; }), 1e-3 * 0.08);
 }
 
 }  // namespace
-}  // namespace froude
+}  // namespace froude::testing

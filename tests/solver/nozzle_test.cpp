@@ -1,17 +1,17 @@
 // A jet of fluid that comes out of a nozzle.
 #include <gtest/gtest.h>
 
-#include <froude/solver/world.h>
-#include "support/worlds.h"
+#include "support/fluid_methods.h"
 
-namespace froude {
+namespace froude::testing {
 namespace {
 
 // Upwards against gravity, so that what is ahead slows down and presses on what comes after it.
-WorldDef fountain(double speed) {
+WorldDef fountain(const std::string& method, double speed) {
   WorldDef def;
   def.domain.box = {{0.0, 0.0}, {1.0, 2.5}};
   def.fluid = FluidDef{};
+  def.fluid->model = method;
   def.fluid->spacing = 0.02;
   EmitterDef nozzle;
   nozzle.name = "nozzle";
@@ -24,9 +24,12 @@ WorldDef fountain(double speed) {
   return def;
 }
 
-TEST(Nozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_high_as_that_carries_it) {
+class FluidNozzle : public FluidMethod {};
+INSTANTIATE_TEST_SUITE_P(Each, FluidNozzle, kFluidMethods, methodName);
+
+TEST_P(FluidNozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_high_as_that_carries_it) {
   const double speed = 6.0;
-  World world(fountain(speed));
+  World world(fountain(GetParam(), speed));
   double top = 0.0;
   for (int k = 0; k < 61; ++k) {
     const StepReport report = world.step(0.01);
@@ -51,8 +54,8 @@ TEST(Nozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_hig
   EXPECT_LT(world.ledger().energyDrift, 0.02);
 }
 
-TEST(Nozzle, a_drowned_nozzle_refuses_what_has_no_room_and_counts_it) {
-  WorldDef def = fountain(1.0);
+TEST_P(FluidNozzle, a_drowned_nozzle_refuses_what_has_no_room_and_counts_it) {
+  WorldDef def = fountain(GetParam(), 1.0);
   World world(def);
   std::vector<Vec2> water;
   for (double y = 0.01; y < 0.4; y += 0.02) {
@@ -66,6 +69,26 @@ TEST(Nozzle, a_drowned_nozzle_refuses_what_has_no_room_and_counts_it) {
   EXPECT_GT(world.ledger().refused, 0u);
   EXPECT_EQ(world.fluid()->size(), water.size() + world.ledger().emitted);
   EXPECT_LT(world.ledger().maxSpeed, 2.0);
+}
+
+// Ahead it falls faster and faster and pulls, where a method knows tension, on what the nozzle still holds.
+TEST_P(FluidNozzle, a_wide_jet_that_falls_comes_out_at_its_speed) {
+  WorldDef def = fountain(GetParam(), 0.5);
+  def.emitters[0].from = {0.8, 2.3};
+  def.emitters[0].to = {0.2, 2.3};
+  World world(def);
+  for (int k = 0; k < 40; ++k) {
+    const StepReport report = world.step(0.01);
+    ASSERT_TRUE(report.ok()) << name(report.trouble) << " at " << world.time();
+    const ParticlePool& pool = *std::as_const(world).fluid();
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      if (pool.y()[i] < 2.28) continue;
+      EXPECT_NEAR(pool.vy()[i], -0.5, 1e-9);
+      EXPECT_NEAR(pool.vx()[i], 0.0, 1e-9);
+    }
+  }
+  EXPECT_GT(world.fluid()->size(), 250u);
+  EXPECT_LT(momentumError(world), 1e-6);
 }
 
 TEST(Nozzle, recycling_keeps_the_limit_in_every_sub_step) {
@@ -88,8 +111,8 @@ TEST(Nozzle, recycling_keeps_the_limit_in_every_sub_step) {
   }
 }
 
-TEST(Nozzle, a_saved_jet_goes_on_with_the_same_bits) {
-  World straight(fountain(3.0)), stopped(fountain(3.0)), resumed(fountain(3.0));
+TEST_P(FluidNozzle, a_saved_jet_goes_on_with_the_same_bits) {
+  World straight(fountain(GetParam(), 3.0)), stopped(fountain(GetParam(), 3.0)), resumed(fountain(GetParam(), 3.0));
   for (int k = 0; k < 20; ++k) ASSERT_TRUE(straight.step(0.01).ok());
   for (int k = 0; k < 9; ++k) ASSERT_TRUE(stopped.step(0.01).ok());
   MemorySnapshot snapshot;
@@ -100,4 +123,4 @@ TEST(Nozzle, a_saved_jet_goes_on_with_the_same_bits) {
 }
 
 }  // namespace
-}  // namespace froude
+}  // namespace froude::testing

@@ -39,8 +39,9 @@ inline BodyDef body(const std::string& name, Polygon shape, const Vec2& position
 }
 
 /// A column of 0.4 × 0.8 that falls onto a turning paddle and an octagon.
-inline World busyWorld(SimdTarget simd = bestSimdTarget()) {
+inline World busyWorld(const std::string& method = "pbf", SimdTarget simd = bestSimdTarget()) {
   WorldDef def = fluidWorld({{0.0, 0.0}, {1.6, 1.2}}, 0.025);
+  def.fluid->model = method;
   def.simd = simd;
   def.bodies.push_back(body("octagon", Polygon::regular(8, 0.08), {0.6, 0.1}));
   BodyDef paddle = body("paddle", Polygon::box({{-0.15, -0.01}, {0.15, 0.01}}), {1.0, 0.3});
