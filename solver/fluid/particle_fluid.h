@@ -86,8 +86,18 @@ class ParticleFluid : public FluidModel {
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
-  void smoothVelocities(const StepContext& context, ParticlePool& pool);
+  // particle_viscosity.cpp
+  void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;
+  double smallerExtent(const ParticlePool& pool) const;
+  void applyViscosity(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  void smoothVelocities(ParticlePool& pool);
   void dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const;
+  void startVelocitySolve(const StepContext& context, const ParticlePool& pool, float share);
+  void solveVelocities(const StepContext& context, const ViscosityLoop& loop);
+  void spreadResidual();
+  void takeSolvedVelocities(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  void runViscosity(const StepContext& context, const ViscosityLoop& loop);
+  void spareCarried(const StepContext& context, const float* changeX, const float* changeY);
 
   CollisionFilter filter() const { return {def_.group, def_.collidesWith}; }
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;
