@@ -6,6 +6,7 @@
 #include <froude/base/parallel.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/contact_log.h>
+#include <froude/solver/fluid/body_drag.h>
 #include <froude/solver/fluid/body_response.h>
 #include <froude/solver/fluid/coarse_pressure.h>
 #include <froude/solver/fluid/fluid_model.h>
@@ -115,6 +116,7 @@ class ParticleFluid : public FluidModel {
 
   Settings settings_;
   CoarsePressure coarse_;
+  BodyDrag dragged_;
   AlignedArray<CellRuns> runs_;
   std::vector<double> excess_;  // one a task
   ContactLog contacts_;

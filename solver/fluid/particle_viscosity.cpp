@@ -153,9 +153,9 @@ void ParticleFluid::dragAlongWalls(const StepContext& context, ParticlePool& poo
 }
 
 // The solve: (1 + C)·d − L d = L v + Σ c (w − v) for the change d of the velocities v, L the sum over pairs, c the drag
-// of a wall that moves at w and C = Σ c. For the change, because its rounding is then that of the change. What the
-// sub-step no longer needs holds its vectors: shift the change, solved the residual, kappa C, diagonal the
-// preconditioner, velocity the direction and smooth the direction's image.
+// of a wall that moves at w and C = Σ c; free bodies give way (body_drag.h). For the change, because its rounding is
+// then that of the change. What the sub-step no longer needs holds its vectors: shift the change, solved the residual,
+// kappa C, diagonal the preconditioner, velocity the direction and smooth the direction's image.
 
 // share: Σ of the weights of a full neighbourhood. Preconditioned by the diagonal of one, which only C makes vary much;
 // carried particles have 0 there, so that they never change.
@@ -170,18 +170,21 @@ void ParticleFluid::startVelocitySolve(const StepContext& context, const Particl
     }
   });
   for (const Carried& c : carried_) diagonal_[c.particle] = 0.0f;
+  dragged_.begin(context.freeBodies, dx_, particleMass());
   if (!context.obstacles.anySticks()) return;
   const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
     if (link.drag == 0.0f || diagonal_[i] == 0.0f) return;
     const double c = unit * static_cast<double>(link.drag);
-    const Vec2 at(x[i], y[i]), pull = c * (surfaceVelocity(context, link, at) - Vec2(vx[i], vy[i]));
-    solvedX_[i] += static_cast<float>(pull.x());
-    solvedY_[i] += static_cast<float>(pull.y());
+    const Vec2 at(x[i], y[i]), u = Vec2(vx[i], vy[i]) - surfaceVelocity(context, link, at);
+    solvedX_[i] -= static_cast<float>(c * u.x());
+    solvedY_[i] -= static_cast<float>(c * u.y());
     kappa_[i] += static_cast<float>(c);
     diagonal_[i] = 1.0f / (1.0f + share + kappa_[i]);
+    if (dragged_.isFree(link.owner)) dragged_.add(i, link.owner, at, c, u);
   });
+  dragged_.start(solvedX_.data(), solvedY_.data());
 }
 
 // Conjugate gradients, x and y as one system: the answer does not depend on how the axes lie.
@@ -209,6 +212,7 @@ void ParticleFluid::solveVelocities(const StepContext& context, const ViscosityL
   double energy = start.energy;
   for (int k = 0; k < kMostIterations; ++k) {
     runViscosity(context, loop);
+    if (dragged_.any()) dragged_.answer(velocityX_.data(), velocityY_.data(), smoothX_.data(), smoothY_.data());
     const auto along = sum([&](std::size_t begin, std::size_t end) {
       Part part{0.0, 0.0};
       for (std::size_t i = begin; i < end; ++i) {
@@ -293,10 +297,14 @@ void ParticleFluid::takeSolvedVelocities(const StepContext& context, ParticlePoo
   });
   if (!context.obstacles.anySticks()) return;
   const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_) * particleMass();
+  dragged_.take(shiftX_.data(), shiftY_.data());
+  std::size_t toBodies = 0;
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
     if (link.drag == 0.0f || diagonal_[i] == 0.0f) return;
-    const Vec2 at(x[i], y[i]), wall = surfaceVelocity(context, link, at);
+    const Vec2 at(x[i], y[i]);
+    Vec2 wall = surfaceVelocity(context, link, at);
+    if (dragged_.isFree(link.owner)) wall += dragged_.gained(toBodies++);
     impulses.add(link.owner, at, unit * static_cast<double>(link.drag) * (Vec2(vx[i], vy[i]) - wall), wall);
   });
 }
