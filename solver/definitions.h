@@ -92,6 +92,9 @@ struct BodyDef {
   std::optional<HingeDef> hinge;    // free bodies only
 };
 
+/// How particle methods take the laminar viscosity: Auto solves for it where the explicit term would bind the sub-step.
+enum class ViscositySolver : std::uint8_t { Auto, Explicit, Implicit };
+
 /// The model's keys. Left-out values are each model's documented defaults.
 struct FluidDef {
   std::string model = "pbf";
@@ -102,6 +105,7 @@ struct FluidDef {
   double contactAngle = kPi / 2;  // [rad]
   int sweeps = 0;                 // pressure sweeps a sub-step; 0: the model's default
   double courant = 0.0;           // largest v·dt/support radius; 0: the model's default
+  ViscositySolver viscositySolver = ViscositySolver::Auto;
   std::uint32_t group = 1, collidesWith = ~0u;
 };
 

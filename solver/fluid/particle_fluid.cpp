@@ -57,7 +57,7 @@ StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, do
   const double stiffness = std::max(std::min(2.0 * pressure.typical, pressure.largest) / settings_.typicalStiffness,
                                     pressure.largest / settings_.largestStiffness);
   if (stiffness > 0.0) bound.tighten(def_.spacing / std::sqrt(stiffness), StepLimit::Pressure);
-  if (def_.viscosity > 0.0) bound.tighten(0.125 * def_.spacing * def_.spacing / def_.viscosity, StepLimit::Viscosity);
+  tightenByViscosity(pool, bound);
   return bound;
 }
 
@@ -107,8 +107,7 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
   meetWalls(context);
   solvePressure(context, pool, stats);
   finishPositions(context, pool, impulses, stats);
-  smoothVelocities(context, pool);
-  dragAlongWalls(context, pool, impulses);
+  applyViscosity(context, pool, impulses);
   bookCarried(context, pool, impulses);
 }
 

@@ -6,6 +6,7 @@
 #include <froude/base/parallel.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/contact_log.h>
+#include <froude/solver/fluid/body_drag.h>
 #include <froude/solver/fluid/body_response.h>
 #include <froude/solver/fluid/coarse_pressure.h>
 #include <froude/solver/fluid/fluid_model.h>
@@ -86,8 +87,18 @@ class ParticleFluid : public FluidModel {
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
-  void smoothVelocities(const StepContext& context, ParticlePool& pool);
+  // particle_viscosity.cpp
+  void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;
+  double smallerExtent(const ParticlePool& pool) const;
+  void applyViscosity(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  void smoothVelocities(ParticlePool& pool);
   void dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const;
+  void startVelocitySolve(const StepContext& context, const ParticlePool& pool, float share);
+  void solveVelocities(const StepContext& context, const ViscosityLoop& loop);
+  void spreadResidual();
+  void takeSolvedVelocities(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  void runViscosity(const StepContext& context, const ViscosityLoop& loop);
+  void spareCarried(const StepContext& context, const float* changeX, const float* changeY);
 
   CollisionFilter filter() const { return {def_.group, def_.collidesWith}; }
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;
@@ -105,6 +116,7 @@ class ParticleFluid : public FluidModel {
 
   Settings settings_;
   CoarsePressure coarse_;
+  BodyDrag dragged_;
   AlignedArray<CellRuns> runs_;
   std::vector<double> excess_;  // one a task
   ContactLog contacts_;

@@ -53,6 +53,18 @@ std::size_t bodiesThat(const WorldDef& def, Motion motion) {
       std::count_if(def.bodies.begin(), def.bodies.end(), [=](const BodyDef& b) { return b.motion == motion; }));
 }
 
+std::string_view viscosityWords(ViscositySolver solver) {
+  switch (solver) {
+    case ViscositySolver::Explicit:
+      return "as an explicit term that binds the sub-step";
+    case ViscositySolver::Implicit:
+      return "by a solve for the velocities in every sub-step";
+    case ViscositySolver::Auto:
+      break;
+  }
+  return "by a solve for the velocities where an explicit term would at least halve the sub-step";
+}
+
 void sortFluid(const scene::Scene& scene, std::vector<Item>& in, std::vector<Item>& out) {
   const WorldDef& def = scene.world;
   if (!def.fluid) {
@@ -65,7 +77,9 @@ void sortFluid(const scene::Scene& scene, std::vector<Item>& in, std::vector<Ite
                    def.fluid->model, def.fluid->spacing),
        "the scene has " + source + " of fluid and `model.fluid` names the model", findModelCard(def.fluid->model)});
   if (def.fluid->viscosity > 0.0) {
-    in.push_back({fmt::format("viscosity {} m²/s", def.fluid->viscosity), "`fluid.viscosity` is not 0"});
+    in.push_back(
+        {fmt::format("viscosity {} m²/s, {}", def.fluid->viscosity, viscosityWords(def.fluid->viscositySolver)),
+         "`fluid.viscosity` is not 0; `model.viscosity_solver` chooses"});
   } else {
     out.push_back({"viscosity", "`fluid.viscosity` is 0"});
   }

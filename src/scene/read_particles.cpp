@@ -76,6 +76,10 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   }
   if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
   if (const auto courant = model.optionalNumber("courant", Range::between(0.01, 1.0))) def.courant = *courant;
+  const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
+  def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
+                        : solver == "explicit" ? ViscositySolver::Explicit
+                                               : ViscositySolver::Implicit;
   draft.scene.world.timeStep = model.optionalNumber("time_step", Range::positive(1e6));
   draft.timeStepPlace = model.place("time_step");
   if (model.has("spacing")) draft.spacingPlace = model.place("spacing");
@@ -113,7 +117,8 @@ void readFluid(TableReader& root, Draft& draft) {
   const bool used = !draft.fluidBlocks.empty() || draft.fluidEmitted;
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
-  TableReader model = tableOrEmpty(root, "model", {"fluid", "spacing", "time_step", "sweeps", "courant"});
+  TableReader model =
+      tableOrEmpty(root, "model", {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;

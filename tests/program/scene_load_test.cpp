@@ -39,6 +39,7 @@ TEST(SceneLoad, left_out_keys_have_their_documented_defaults) {
   EXPECT_DOUBLE_EQ(w.fluid->contactAngle, kPi / 2);
   EXPECT_EQ(w.fluid->sweeps, 0);
   EXPECT_EQ(w.fluid->courant, 0.0);
+  EXPECT_EQ(w.fluid->viscositySolver, ViscositySolver::Auto);
   EXPECT_FALSE(w.timeStep);
   ASSERT_TRUE(w.bullet);
   EXPECT_EQ(w.bullet->radius, 0.002);

@@ -68,6 +68,7 @@ void expectSameSpecies(const WorldDef& a, const WorldDef& b) {
   ASSERT_EQ(a.fluid.has_value(), b.fluid.has_value());
   if (a.fluid) {
     EXPECT_EQ(a.fluid->model, b.fluid->model);
+    EXPECT_EQ(a.fluid->viscositySolver, b.fluid->viscositySolver);
     EXPECT_EQ(bits(a.fluid->spacing) + bits(a.fluid->density) + bits(a.fluid->viscosity) + bits(a.fluid->contactAngle) +
                   bits(a.fluid->courant) + bits(a.fluid->sweeps),
               bits(b.fluid->spacing) + bits(b.fluid->density) + bits(b.fluid->viscosity) + bits(b.fluid->contactAngle) +
@@ -146,6 +147,7 @@ spacing = 0.0173
 time_step = 1e-3
 courant = 0.3
 sweeps = 7
+viscosity_solver = "implicit"
 [fluid]
 density = 998.2
 contact_angle = 61.7

@@ -123,6 +123,22 @@ TEST_P(FluidWorld, a_steady_step_with_floating_and_resting_bodies_allocates_noth
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(world.step(0.02).ok());
   EXPECT_EQ(allocations - before, 0u);
 }
+
+TEST(World, a_steady_step_that_solves_for_viscosity_allocates_nothing) {
+  WorldDef def = fluidWorld({{0.0, 0.0}, {1.2, 1.0}}, 0.025);
+  def.fluid->viscosity = 0.5;
+  def.domain.slip = Slip::NoSlip;
+  BodyDef raft = body("raft", Polygon::box({{-0.1, -0.1}, {0.1, 0.1}}), {0.5, 0.6});
+  raft.motion = Motion::Free;
+  raft.density = 500.0;
+  def.bodies.push_back(raft);
+  World world(def);
+  fill(world, {{0.0, 0.0}, {1.2, 0.45}}, 0.025);
+  run(world, 800);
+  const std::size_t before = allocations;
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(world.substep().ok());
+  EXPECT_EQ(allocations - before, 0u);
+}
 #endif
 
 TEST_P(FluidWorld, every_instruction_set_tells_the_same_story) {
