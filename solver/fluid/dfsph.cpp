@@ -106,7 +106,7 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
       least_[i] = place_[i] == GradientCorrection::Place::Inside ? kNoFloor : 0.0f;
       kappa_[i] = std::max(unit * pressure[i], least_[i]);
       // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
-      // error: more, and a deep fluid bounces. What has room at a surface be compressed up to its rest density.
+      // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
       target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -kReturn * std::max(0.0f, density[i] - 1.0f);
       // Of the pressure system, (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
       const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
@@ -126,6 +126,12 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
     target_[i] = kNever;
     kappa_[i] = least_[i] = 0.0f;
   });
+  for (const Carried& c : carried_) {  // goes its own way, whatever others give back
+    if (tense_[c.particle] == 0) continue;
+    tense_[c.particle] = 0;
+    skewX_[c.particle] = -skewX_[c.particle];
+    skewY_[c.particle] = -skewY_[c.particle];
+  }
   push(context, kappa_.data(), nullptr);
 }
 
