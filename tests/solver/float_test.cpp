@@ -59,9 +59,10 @@ class Float : public FluidMethod {};
 INSTANTIATE_TEST_SUITE_P(Each, Float, kFluidMethods, methodName);
 
 // fluid_floating_polygons.csv: a square of half the water's density floats on its corner, its centre at the surface.
-// What it displaces lifts the level of the tank.
-TEST_P(Float, a_square_of_half_the_density_finds_the_draft_of_archimedes_at_three_spacings) {
+// What it displaces lifts the level of the tank. The finest spacing is for one method: it takes as long as the rest.
+TEST_P(Float, a_square_of_half_the_density_finds_the_draft_of_archimedes_at_several_spacings) {
   for (const double dx : {0.1, 0.05, 0.025}) {
+    if (dx < 0.03 && !pbf()) continue;
     const double width = 3.0, depth = 1.6;
     World world = tankWith(squareOf(1.0, 0.5, {0.5 * width, depth}, 45.0), width, depth, dx, GetParam());
     const double water = static_cast<double>(world.fluid()->size()) * dx * dx;
