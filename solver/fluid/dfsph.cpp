@@ -17,7 +17,7 @@ constexpr int kDensitySweeps = 5;
 constexpr float kStep = 0.8f, kMomentum = 0.4f;  // of a sweep; the spectral radius is 2.5 (walls included)
 constexpr float kShare = 0.5f;                   // of a density error that such a sweep takes away
 constexpr float kReturn = 3e-4f;                 // share of a density error that the velocities take back in a sub-step
-constexpr float kFull = 0.85f;                   // density from which a kernel counts as full
+constexpr float kFull = 0.97f;                   // density from which a kernel counts as full
 constexpr float kSkew = 0.3f;                    // |S + g| from which it does not
 constexpr float kEven = 0.2f;                    // share of S by which a particle gives way to an uneven neighbourhood
 constexpr double kOpen = 2.0;                    // times √N particles at a surface make a free surface
