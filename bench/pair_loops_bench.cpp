@@ -50,9 +50,11 @@ struct Fluid {
   AlignedArray<CellRuns> runs;
   AlignedArray<std::int32_t> x, y, newX, newY;
   AlignedArray<float> value, density, diagonal, shiftX, shiftY, target, kappa, change;
+  // dfsph: S, B, κB and the displacement of the sub-step.
+  AlignedArray<float> skewX, skewY, totalX, totalY, bxx, bxy, byy, kxx, kxy, kyy;
 };
 
-enum class Pass { Density, DensityAndDiagonal, Displace, Viscosity, Sweep };
+enum class Pass { Density, DensityAndDiagonal, Displace, Viscosity, Sweep, Moments, Divergence, Push };
 
 // Arguments: particles along a side, instruction set (0 scalar, 1 sse4, 2 avx2, 3 avx3), threads.
 void pass(benchmark::State& state, Pass what) {
@@ -72,6 +74,30 @@ void pass(benchmark::State& state, Pass what) {
   displacement.shiftY = fluid.shiftY.data();
   displacement.newX = fluid.newX.data();
   displacement.newY = fluid.newY.data();
+  for (AlignedArray<float>* a : {&fluid.skewX, &fluid.skewY, &fluid.totalX, &fluid.totalY, &fluid.bxx, &fluid.bxy,
+                                 &fluid.byy, &fluid.kxx, &fluid.kxy, &fluid.kyy}) {
+    a->resize(fluid.count);
+  }
+  const MomentLoop moments{nullptr,
+                           fluid.density.data(),
+                           fluid.skewX.data(),
+                           fluid.skewY.data(),
+                           fluid.diagonal.data(),
+                           {fluid.bxx.data(), fluid.bxy.data(), fluid.byy.data()}};
+  DivergenceLoop divergence{};
+  divergence.ux = fluid.totalX.data();
+  divergence.uy = fluid.totalY.data();
+  divergence.correction = {fluid.bxx.data(), fluid.bxy.data(), fluid.byy.data()};
+  divergence.update = update.update;
+  PushLoop push{};
+  push.pressure = fluid.value.data();
+  push.scaled = {fluid.kxx.data(), fluid.kxy.data(), fluid.kyy.data()};
+  push.skewX = fluid.skewX.data();
+  push.skewY = fluid.skewY.data();
+  push.shiftX = fluid.shiftX.data();
+  push.shiftY = fluid.shiftY.data();
+  push.totalX = fluid.totalX.data();
+  push.totalY = fluid.totalY.data();
   const ViscosityLoop viscosity{fluid.value.data(),  fluid.kappa.data(), 0.05f, 0.02f,
                                 fluid.shiftX.data(), fluid.shiftY.data()};
   const auto run = [&](auto&& loop) { parallelFor(fluid.cells.size(), kCellBlock, loop); };
@@ -85,6 +111,15 @@ void pass(benchmark::State& state, Pass what) {
       }
       if (what == Pass::Displace || what == Pass::Sweep) {
         run([&](std::size_t b, std::size_t e) { loops.displace(frame, displacement, b, e); });
+      }
+      if (what == Pass::Moments) {
+        run([&](std::size_t b, std::size_t e) { loops.moments(frame, moments, b, e); });
+      }
+      if (what == Pass::Divergence) {
+        run([&](std::size_t b, std::size_t e) { loops.divergence(frame, divergence, b, e); });
+      }
+      if (what == Pass::Push) {
+        run([&](std::size_t b, std::size_t e) { loops.push(frame, push, b, e); });
       }
       if (what == Pass::Viscosity) {
         run([&](std::size_t b, std::size_t e) { loops.viscosity(frame, viscosity, b, e); });
@@ -106,5 +141,8 @@ BENCHMARK_CAPTURE(pass, densityAndDiagonal, Pass::DensityAndDiagonal)->Apply(arg
 BENCHMARK_CAPTURE(pass, displace, Pass::Displace)->Apply(arguments);
 BENCHMARK_CAPTURE(pass, viscosity, Pass::Viscosity)->Apply(arguments);
 BENCHMARK_CAPTURE(pass, sweep, Pass::Sweep)->Apply(arguments);
+BENCHMARK_CAPTURE(pass, moments, Pass::Moments)->Apply(arguments);
+BENCHMARK_CAPTURE(pass, divergence, Pass::Divergence)->Apply(arguments);
+BENCHMARK_CAPTURE(pass, push, Pass::Push)->Apply(arguments);
 
 }  // namespace
