@@ -93,11 +93,12 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
-  // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 641 bytes a particle
-  // and 38 MB besides; 20,000 and 200,000 bullets give 238 bytes each. State columns twice, undo copy, scratch, scene.
-  constexpr std::size_t kFluidBytes = 640, kBulletBytes = 240, kFieldBytes = 38'000'000;
-  (void)def;
-  return kFieldBytes + kFluidBytes * fluidParticles + kBulletBytes * bullets;
+  // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 583 bytes a particle
+  // for pbf, 635 for dfsph, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes each. State columns, undo
+  // copy, scratch, and at a checkpoint its image in memory.
+  constexpr std::size_t kBulletBytes = 240, kFieldBytes = 56'000'000;
+  const std::size_t fluidBytes = def.fluid && def.fluid->model == "dfsph" ? 640 : 590;
+  return kFieldBytes + fluidBytes * fluidParticles + kBulletBytes * bullets;
 }
 
 }  // namespace froude

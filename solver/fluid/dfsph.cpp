@@ -172,8 +172,15 @@ void Dfsph::push(const StepContext& context, const float* pressure, float* kappa
 
 // What the displacements add to the densities, on the mean, and the change of κ that takes it away.
 double Dfsph::runDivergence(const StepContext& context) {
-  const PressureUpdate update{target_.data(), diagonal_.data(), kappa_.data(), change_.data(),
-                              kStep,          least_.data(),    kMomentum};
+  // A free body follows the pressures sweep by sweep: with momentum a light one is thrown to and fro.
+  const bool free = bodies_.any();
+  const PressureUpdate update{target_.data(),
+                              diagonal_.data(),
+                              kappa_.data(),
+                              change_.data(),
+                              free ? static_cast<float>(kRelaxation) : kStep,
+                              least_.data(),
+                              free ? 0.0f : kMomentum};
   const DivergenceLoop loop{totalX_.data(),
                             totalY_.data(),
                             correction_.matrices(),

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kUserBlock = 512;        // smallest that HDF5 knows [bytes]
 constexpr std::size_t kPackedUpTo = 64;        // larger blocks are datasets [bytes]
 constexpr std::size_t kHashedBlock = 1 << 20;  // [bytes]
-constexpr std::size_t kGrowth = 2 << 20;      // of the file in memory [bytes]
+constexpr std::size_t kGrowth = 2 << 20;       // of the file in memory [bytes]
 constexpr std::string_view kMagic = "froude checkpoint\nchecksum ";
 
 // Owner of an HDF5 handle.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 
-#include <froude/solver/fluid/kernel.h>
 #include "validation/curve.h"
 #include "validation/dam_curve.h"
 #include "validation/exact.h"
@@ -193,11 +192,10 @@ TEST(Measures, hydrostatic_pressure_has_no_error_and_bodies_that_bear_nothing_ha
   Stage stage("hydrostatic");
   ParticlePool& pool = *stage.world.fluid();
   const double g = 9.81, level = 0.5 + static_cast<double>(pool.size()) * 0.025 * 0.025 - 0.425;
-  // What a particle holds is a multiplier; the query turns it into a pressure.
-  const auto multiplier = pool.findColumn<float>("pressure");
-  ASSERT_TRUE(multiplier);
+  const auto pressure = pool.findColumn<float>("pressure");
+  ASSERT_TRUE(pressure);
   for (std::size_t i = 0; i < pool.size(); ++i)
-    pool.column(*multiplier)[i] = static_cast<float>(g * (level - pool.y()[i]) / kernel::kGradientMoment);
+    pool.column(*pressure)[i] = static_cast<float>(g * (level - pool.y()[i]));
   const auto drift = [](const Vec2&, double) { return Vec2(0.006, -0.008); };
   stage.showField(0.0, drift);
   stage.showField(6.0, drift);
