@@ -31,6 +31,7 @@ Dfsph::Dfsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
 void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   findArrangement(context, pool);
   findWallGain(context);
+  prepareSystem(pool);
   warmStart(context, pool);
   solveDivergence(context, pool, stats);
   solveDensity(context, pool);
@@ -83,55 +84,66 @@ void Dfsph::findWallGain(const StepContext& context) {
   });
 }
 
+// Only a free surface gives pressures their zero, and so tension a meaning.
+bool Dfsph::hasSurface() const {
+  const auto count = parallelSum(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    double part = 0.0;
+    for (std::size_t i = begin; i < end; ++i) part += place_[i] == GradientCorrection::Place::AtSurface ? 1.0 : 0.0;
+    return part;
+  });
+  return count > kOpen * std::sqrt(static_cast<double>(grid_.size()));
+}
+
+// What the pressures are to reach, what they may be, and the diagonal of their system:
+// (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
+void Dfsph::prepareSystem(const ParticlePool& pool) {
+  const auto pressure = pool.column(pressure_), density = pool.column(density_);
+  const Matrices<const float> b = correction_.matrices();
+  const bool walls = walls_.any(), open = hasSurface();
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
+      const bool inside = place_[i] == GradientCorrection::Place::Inside;
+      // Nothing hangs on a wall either: drawn into it, particles of a full closed tank burst.
+      least_[i] = inside ? kNoFloor : 0.0f;
+      // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
+      // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
+      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -kReturn * std::max(0.0f, density[i] - 1.0f);
+      const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
+      const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
+      const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
+      diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
+      tense_[i] = open && inside && pressure[i] < 0.0f;
+      if (tense_[i] == 0) continue;
+      // Of κᵢ + κⱼ the own pressure changes its sign.
+      diagonal_[i] -= 2.0f * (x * x + y * y);
+      skewX_[i] = -skewX_[i];
+      skewY_[i] = -skewY_[i];
+    }
+  });
+  for (const Carried& c : carried_) {  // goes its own way, whatever others even out or give back
+    tense_[c.particle] = 0;
+    skewX_[c.particle] = skewY_[c.particle] = 0.0f;
+  }
+  // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
+  walls_.forEachFilm([&](std::uint32_t i) {
+    target_[i] = kNever;
+    least_[i] = 0.0f;
+  });
+}
+
 void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
   const auto vx = pool.vx(), vy = pool.vy();
-  const auto pressure = pool.column(pressure_), density = pool.column(density_);
+  const auto pressure = pool.column(pressure_);
   const auto unit = static_cast<float>(pressureUnit(context.dt));
   const double way = context.dt / dx_;
-  const Matrices<const float> b = correction_.matrices();
-  const bool walls = walls_.any();
-  // Only a free surface gives pressures their zero, and so tension a meaning.
-  const double atSurface = parallelSum(pool.size(), [&](std::size_t begin, std::size_t end) {
-    double count = 0.0;
-    for (std::size_t i = begin; i < end; ++i) count += place_[i] == GradientCorrection::Place::AtSurface ? 1.0 : 0.0;
-    return count;
-  });
-  const bool open = atSurface > kOpen * std::sqrt(static_cast<double>(pool.size()));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       totalX_[i] = static_cast<float>(way * vx[i]);
       totalY_[i] = static_cast<float>(way * vy[i]);
-      const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
-      // Nothing hangs on a wall either: drawn into it, particles of a full closed tank burst.
-      least_[i] = place_[i] == GradientCorrection::Place::Inside ? kNoFloor : 0.0f;
-      kappa_[i] = std::max(unit * pressure[i], least_[i]);
-      // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
-      // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
-      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -kReturn * std::max(0.0f, density[i] - 1.0f);
-      // Of the pressure system, (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
-      const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
-      const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
-      tense_[i] = open && place_[i] == GradientCorrection::Place::Inside && pressure[i] < 0.0f;
-      const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
-      diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
-      if (tense_[i] != 0) {
-        diagonal_[i] -= 2.0f * (x * x + y * y);
-        skewX_[i] = -skewX_[i];
-        skewY_[i] = -skewY_[i];
-      }
+      kappa_[i] = target_[i] == kNever ? 0.0f : std::max(unit * pressure[i], least_[i]);
     }
   });
-  // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
-  walls_.forEachFilm([&](std::uint32_t i) {
-    target_[i] = kNever;
-    kappa_[i] = least_[i] = 0.0f;
-  });
-  for (const Carried& c : carried_) {  // goes its own way, whatever others give back
-    if (tense_[c.particle] == 0) continue;
-    tense_[c.particle] = 0;
-    skewX_[c.particle] = -skewX_[c.particle];
-    skewY_[c.particle] = -skewY_[c.particle];
-  }
   push(context, kappa_.data(), nullptr);
 }
 
@@ -285,7 +297,7 @@ void Dfsph::solveDensity(const StepContext& context, ParticlePool& pool) {
 
 std::size_t Dfsph::memoryBytes() const {
   return ParticleFluid::memoryBytes() + correction_.memoryBytes() + 9 * totalX_.capacity() * sizeof(float) +
-         place_.capacity();
+         place_.capacity() + tense_.capacity();
 }
 
 }  // namespace froude

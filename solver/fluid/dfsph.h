@@ -21,6 +21,8 @@ class Dfsph final : public ParticleFluid {
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
   void findArrangement(const StepContext& context, ParticlePool& pool);
   void findWallGain(const StepContext& context);
+  bool hasSurface() const;
+  void prepareSystem(const ParticlePool& pool);
   void warmStart(const StepContext& context, const ParticlePool& pool);
   void solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats);
   void solveDensity(const StepContext& context, ParticlePool& pool);
@@ -33,10 +35,10 @@ class Dfsph final : public ParticleFluid {
   AlignedArray<GradientCorrection::Place> place_;
   AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the solve
   AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W; −S of particles in tension
-  AlignedArray<std::uint8_t> tense_;
-  AlignedArray<float> totalX_, totalY_;  // displacement in the sub-step
-  AlignedArray<float> least_;            // lowest κ: none inside, else 0
-  AlignedArray<float> wallGain_;         // what the walls' own motion adds to λ
+  AlignedArray<std::uint8_t> tense_;                    // 1 where differences of pressure are felt, not sums
+  AlignedArray<float> totalX_, totalY_;                 // displacement in the sub-step
+  AlignedArray<float> least_;                           // lowest κ: none inside, else 0
+  AlignedArray<float> wallGain_;                        // what the walls' own motion adds to λ
 };
 
 }  // namespace froude

@@ -130,6 +130,21 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
   });
 }
 
+// Adds what a wall does to a move, and gives it to the particle.
+template <typename Loop>
+void takeMove(const Loop& loop, std::uint32_t i, float& moveX, float& moveY) {
+  const float own = loop.pressure[i];
+  if (loop.wallX != nullptr) {
+    const float gx = loop.wallX[i], gy = loop.wallY[i];
+    const float along = loop.tangent[i] * (gx * moveY - gy * moveX);
+    moveX -= 2.0f * own * gx + along * gy;
+    moveY -= 2.0f * own * gy - along * gx;
+  }
+  loop.shiftX[i] += moveX;
+  loop.shiftY[i] += moveY;
+  if (loop.kappa != nullptr) loop.kappa[i] += own;
+}
+
 void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::size_t end) {
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sx = 0.0f, sy = 0.0f;
@@ -142,18 +157,9 @@ void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::
     const float qx = loop.skewX[i], qy = loop.skewY[i];
     float moveX = 2.0f * kNorm * sx - (loop.scaled.xx[i] * qx + loop.scaled.xy[i] * qy);
     float moveY = 2.0f * kNorm * sy - (loop.scaled.xy[i] * qx + loop.scaled.yy[i] * qy);
-    const float own = loop.pressure[i];
-    if (loop.wallX != nullptr) {
-      const float gx = loop.wallX[i], gy = loop.wallY[i];
-      const float along = loop.tangent[i] * (gx * moveY - gy * moveX);
-      moveX -= 2.0f * own * gx + along * gy;
-      moveY -= 2.0f * own * gy - along * gx;
-    }
-    loop.shiftX[i] += moveX;
-    loop.shiftY[i] += moveY;
+    takeMove(loop, i, moveX, moveY);
     loop.totalX[i] += moveX;
     loop.totalY[i] += moveY;
-    if (loop.kappa != nullptr) loop.kappa[i] += own;
   });
 }
 
@@ -168,17 +174,9 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
       sy += f * dy;
     });
     float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
-    if (loop.wallX != nullptr) {
-      const float gx = loop.wallX[i], gy = loop.wallY[i];
-      const float along = loop.tangent[i] * (gx * moveY - gy * moveX);
-      moveX -= 2.0f * own * gx + along * gy;
-      moveY -= 2.0f * own * gy - along * gx;
-    }
-    loop.shiftX[i] += moveX;
-    loop.shiftY[i] += moveY;
+    takeMove(loop, i, moveX, moveY);
     loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(moveX / kUnit)));
     loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(moveY / kUnit)));
-    if (loop.kappa != nullptr) loop.kappa[i] += own;
   });
 }
 

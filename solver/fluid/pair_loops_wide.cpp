@@ -329,7 +329,6 @@ HWY_INLINE Wall wallOf(const DensityLoop& loop, std::uint32_t i, std::uint32_t c
 double densityOnly(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   VF excess = hn::Zero(f);
-  double scalarExcess = 0.0;
   sweepCells<1, 0>(
       frame, begin, end, nullptr,
       [&](VF m, VF, VF, const VF*, const VF*, VF* sums) FROUDE_INLINE {
@@ -343,23 +342,29 @@ double densityOnly(const PairFrame& frame, const DensityLoop& loop, std::size_t 
         if (loop.update.target == nullptr) return;
         updatePressure(loop.update, i, count, density, loadSome(loop.update.diagonal + i, count), excess);
       });
-  return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess))) + scalarExcess;
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess)));
+}
+
+// To sums: W, ∇W = (px, py) and |∇W|², without their factors.
+HWY_INLINE void addNeighbour(VF m, VF dx, VF dy, VF& px, VF& py, VF* sums) {
+  const VF m3 = hn::Mul(m, hn::Mul(m, m));
+  sums[0] = hn::Add(sums[0], shapeOf(m, m3));
+  const VF slope = slopeOf(m3);
+  px = hn::Mul(slope, dx);
+  py = hn::Mul(slope, dy);
+  sums[1] = hn::Add(sums[1], px);
+  sums[2] = hn::Add(sums[2], py);
+  sums[3] = hn::MulAdd(px, px, hn::MulAdd(py, py, sums[3]));
 }
 
 double densityAndDiagonal(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   VF excess = hn::Zero(f);
-  double scalarExcess = 0.0;
   sweepCells<4, 0>(
       frame, begin, end, nullptr,
       [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
-        const VF m3 = hn::Mul(m, hn::Mul(m, m));
-        sums[0] = hn::Add(sums[0], shapeOf(m, m3));
-        const VF slope = slopeOf(m3);
-        const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
-        sums[1] = hn::Add(sums[1], px);
-        sums[2] = hn::Add(sums[2], py);
-        sums[3] = hn::MulAdd(px, px, hn::MulAdd(py, py, sums[3]));
+        VF px, py;
+        addNeighbour(m, dx, dy, px, py, sums);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
         VF density = hn::Mul(hn::Set(f, kNorm), sums[0]);
@@ -376,7 +381,7 @@ double densityAndDiagonal(const PairFrame& frame, const DensityLoop& loop, std::
         storeSome(diagonal, loop.diagonal + i, count);
         if (loop.update.target != nullptr) updatePressure(loop.update, i, count, density, diagonal, excess);
       });
-  return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess))) + scalarExcess;
+  return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess)));
 }
 
 double density(const PairFrame& frame, const DensityLoop& loop, std::size_t begin, std::size_t end) {
@@ -413,13 +418,8 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
   sweepCells<7, 0>(
       frame, begin, end, nullptr,
       [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
-        const VF m3 = hn::Mul(m, hn::Mul(m, m));
-        sums[0] = hn::Add(sums[0], shapeOf(m, m3));
-        const VF slope = slopeOf(m3);
-        const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
-        sums[1] = hn::Add(sums[1], px);
-        sums[2] = hn::Add(sums[2], py);
-        sums[3] = hn::MulAdd(px, px, hn::MulAdd(py, py, sums[3]));
+        VF px, py;
+        addNeighbour(m, dx, dy, px, py, sums);
         sums[4] = hn::MulAdd(px, dx, sums[4]);
         sums[5] = hn::MulAdd(px, dy, sums[5]);
         sums[6] = hn::MulAdd(py, dy, sums[6]);
@@ -436,6 +436,23 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
         storeSome(hn::Mul(second, sums[5]), loop.moment.xy + i, count);
         storeSome(hn::Mul(second, sums[6]), loop.moment.yy + i, count);
       });
+}
+
+// Adds what a wall does to a move, and gives it to the particles.
+template <typename Loop>
+HWY_INLINE void takeMove(const Loop& loop, std::uint32_t i, std::uint32_t count, VF& moveX, VF& moveY) {
+  const VF own = loadSome(loop.pressure + i, count);
+  if (loop.wallX != nullptr) {
+    const VF gx = loadSome(loop.wallX + i, count), gy = loadSome(loop.wallY + i, count);
+    const VF tangent = loadSome(loop.tangent + i, count);
+    const VF along = hn::Mul(tangent, hn::Sub(hn::Mul(gx, moveY), hn::Mul(gy, moveX)));
+    const VF twice = hn::Add(own, own);
+    moveX = hn::Sub(moveX, hn::MulAdd(twice, gx, hn::Mul(along, gy)));
+    moveY = hn::Sub(moveY, hn::Sub(hn::Mul(twice, gy), hn::Mul(along, gx)));
+  }
+  storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
+  storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
+  if (loop.kappa != nullptr) storeSome(hn::Add(loadSome(loop.kappa + i, count), own), loop.kappa + i, count);
 }
 
 void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::size_t end) {
@@ -455,20 +472,9 @@ void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::
         const VF yy = loadSome(loop.scaled.yy + i, count), scale = hn::Set(f, 4.0f * kNorm);
         VF moveX = hn::NegMulAdd(xx, qx, hn::NegMulAdd(xy, qy, hn::Mul(scale, sums[0])));
         VF moveY = hn::NegMulAdd(xy, qx, hn::NegMulAdd(yy, qy, hn::Mul(scale, sums[1])));
-        const VF own = loadSome(loop.pressure + i, count);
-        if (loop.wallX != nullptr) {
-          const VF gx = loadSome(loop.wallX + i, count), gy = loadSome(loop.wallY + i, count);
-          const VF tangent = loadSome(loop.tangent + i, count);
-          const VF along = hn::Mul(tangent, hn::Sub(hn::Mul(gx, moveY), hn::Mul(gy, moveX)));
-          const VF twice = hn::Add(own, own);
-          moveX = hn::Sub(moveX, hn::MulAdd(twice, gx, hn::Mul(along, gy)));
-          moveY = hn::Sub(moveY, hn::Sub(hn::Mul(twice, gy), hn::Mul(along, gx)));
-        }
-        storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
-        storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
+        takeMove(loop, i, count, moveX, moveY);
         storeSome(hn::Add(loadSome(loop.totalX + i, count), moveX), loop.totalX + i, count);
         storeSome(hn::Add(loadSome(loop.totalY + i, count), moveY), loop.totalY + i, count);
-        if (loop.kappa != nullptr) storeSome(hn::Add(loadSome(loop.kappa + i, count), own), loop.kappa + i, count);
       });
 }
 
@@ -483,21 +489,10 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
         sums[1] = hn::MulAdd(weight, dy, sums[1]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        const VF own = loadSome(loop.pressure + i, count);
         VF moveX = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[0]), moveY = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[1]);
-        if (loop.wallX != nullptr) {
-          const VF gx = loadSome(loop.wallX + i, count), gy = loadSome(loop.wallY + i, count);
-          const VF tangent = loadSome(loop.tangent + i, count);
-          const VF along = hn::Mul(tangent, hn::Sub(hn::Mul(gx, moveY), hn::Mul(gy, moveX)));
-          const VF twice = hn::Add(own, own);
-          moveX = hn::Sub(moveX, hn::MulAdd(twice, gx, hn::Mul(along, gy)));
-          moveY = hn::Sub(moveY, hn::Sub(hn::Mul(twice, gy), hn::Mul(along, gx)));
-        }
-        storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
-        storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
+        takeMove(loop, i, count, moveX, moveY);
         storeMoved(frame.x + i, moveX, loop.newX + i, count);
         storeMoved(frame.y + i, moveY, loop.newY + i, count);
-        if (loop.kappa != nullptr) storeSome(hn::Add(loadSome(loop.kappa + i, count), own), loop.kappa + i, count);
       });
 }
 

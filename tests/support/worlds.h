@@ -30,6 +30,17 @@ inline WorldDef fluidWorld(const Box& domain, double dx) {
   return def;
 }
 
+/// Of fluid, without an end.
+inline EmitterDef nozzle(const Vec2& from, const Vec2& to, double speed, std::size_t limit) {
+  EmitterDef def;
+  def.kind = EmitterDef::Kind::Fluid;
+  def.from = from;
+  def.to = to;
+  def.speed = speed;
+  def.limit = limit;
+  return def;
+}
+
 inline BodyDef body(const std::string& name, Polygon shape, const Vec2& position) {
   BodyDef def;
   def.name = name;
@@ -49,14 +60,9 @@ inline World busyWorld(const std::string& method = "pbf", SimdTarget simd = best
   paddle.spin = 3.0;
   def.bodies.push_back(paddle);
   def.bullet = BulletDef{};
-  EmitterDef nozzle;
-  nozzle.kind = EmitterDef::Kind::Fluid;
-  nozzle.from = {1.4, 1.0};
-  nozzle.to = {1.2, 1.0};
-  nozzle.speed = 1.0;
-  nozzle.limit = 60;
-  nozzle.policy = GrowthPolicy::RecycleOldest;
-  def.emitters.push_back(nozzle);
+  EmitterDef jet = nozzle({1.4, 1.0}, {1.2, 1.0}, 1.0, 60);
+  jet.policy = GrowthPolicy::RecycleOldest;
+  def.emitters.push_back(jet);
   EmitterDef gun;
   gun.kind = EmitterDef::Kind::Bullet;
   gun.from = {0.2, 1.1};
