@@ -121,9 +121,11 @@ void Dfsph::prepareSystem(const ParticlePool& pool) {
       skewY_[i] = -skewY_[i];
     }
   });
-  for (const Carried& c : carried_) {  // goes its own way, whatever others even out or give back
+  for (const Carried& c : carried_) {  // goes its own way, whatever others give back
+    if (tense_[c.particle] == 0) continue;
     tense_[c.particle] = 0;
-    skewX_[c.particle] = skewY_[c.particle] = 0.0f;
+    skewX_[c.particle] = -skewX_[c.particle];
+    skewY_[c.particle] = -skewY_[c.particle];
   }
   // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
   walls_.forEachFilm([&](std::uint32_t i) {
@@ -280,6 +282,7 @@ void Dfsph::evenOut() {
       if (target_[i] != kNever) target_[i] = 1.0f;
     }
   });
+  holdCarried(false);
 }
 
 void Dfsph::solveDensity(const StepContext& context, ParticlePool& pool) {

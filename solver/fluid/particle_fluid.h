@@ -53,6 +53,8 @@ class ParticleFluid : public FluidModel {
   /// With the walls as they are, at the present coordinates.
   DensityLoop densityLoop(float* density, float* diagonal, const PressureUpdate& update) const;
   void runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity = true);
+  /// What a nozzle carries goes back to where it was predicted; what it was to move by is booked as velocity, or not.
+  void holdCarried(bool asVelocity);
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
@@ -104,7 +106,6 @@ class ParticleFluid : public FluidModel {
   void addFieldGravity(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;
   void wrapPeriodic(ParticlePool& pool);
   void findCarried(const StepContext& context, const ParticlePool& pool);
-  void holdCarried(bool asVelocity);
   void bookCarried(const StepContext& context, const ParticlePool& pool, ImpulseLedger& impulses) const;
   void resizeScratch(std::size_t n);
   BodyResponse::Units bodyUnits(double dt) const { return {dx_, particleMass(), particleMass() * dx_ / dt}; }
