@@ -95,6 +95,19 @@ struct BodyDef {
 /// How particle methods take the laminar viscosity: Auto solves for it where the explicit term would bind the sub-step.
 enum class ViscositySolver : std::uint8_t { Auto, Explicit, Implicit };
 
+/// Pressure over the density ratio r = ρ/ρ0: Linear c²(r − 1), Tait c²(r⁷ − 1)/7 (times ρ0).
+enum class EquationOfState : std::uint8_t { Linear, Tait };
+
+/// Keys of the weakly compressible model alone.
+struct CompressibleDef {
+  double support = 4.0;              // radius of a kernel, in spacings, 2 to 6
+  double soundSpeed = 0.0;           // c [m/s]; 0: ten times the largest speed that is to be expected
+  double densityDiffusion = 0.2;     // δ
+  double artificialViscosity = 0.0;  // α (Monaghan): a kinematic viscosity of α·c·(support radius)/16
+  double backgroundPressure = 0.0;   // [Pa·m]: on top of all pressures, where there is no free surface
+  EquationOfState equation = EquationOfState::Linear;
+};
+
 /// The model's keys. Left-out values are each model's documented defaults.
 struct FluidDef {
   std::string model = "pbf";
@@ -106,6 +119,7 @@ struct FluidDef {
   int sweeps = 0;                 // pressure sweeps a sub-step; 0: the model's default
   double courant = 0.0;           // largest v·dt/support radius; 0: the model's default
   ViscositySolver viscositySolver = ViscositySolver::Auto;
+  CompressibleDef compressible;
   std::uint32_t group = 1, collidesWith = ~0u;
 };
 

@@ -4,6 +4,7 @@
 #include <froude/base/error.h>
 #include <froude/solver/fluid/dfsph.h>
 #include <froude/solver/fluid/pbf.h>
+#include <froude/solver/fluid/wcsph.h>
 #include <froude/solver/model_card.h>
 #include <froude/solver/world.h>
 
@@ -58,6 +59,13 @@ std::span<const ModelCard> modelCards() {
         "X. Hu, N. Adams: An incompressible multi-phase SPH method. J. Comput. Phys. 227, 2007",
         "J. Bonet, T. Lok: Variational and momentum preservation aspects of SPH formulations. Comput. Methods Appl. "
         "Mech. Eng. 180, 1999"}},
+      {"wcsph",
+       "Weakly compressible SPH",
+       "a fluid with a free surface that is a little elastic",
+       "surface tension",
+       {"courant * support / v_max"},
+       {"sound"},
+       {"M. Antuono et al. 2010"}},
       {"rigid",
        "Rigid bodies",
        "free polygons, concave ones too: contacts with Coulomb friction and Newton's restitution, hinges to the world, "
@@ -86,10 +94,15 @@ const ModelCard* findModelCard(std::string_view name) {
   return nullptr;
 }
 
+double supportOf(const FluidDef& def) {
+  return (def.model == "wcsph" ? def.compressible.support : kernel::kSupport) * def.spacing;
+}
+
 std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef& domain, ParticlePool& pool) {
   if (def.model == "pbf") return std::make_unique<Pbf>(def, domain, pool);
   if (def.model == "dfsph") return std::make_unique<Dfsph>(def, domain, pool);
-  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf, dfsph");
+  if (def.model == "wcsph") return std::make_unique<Wcsph>(def, domain, pool);
+  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf, dfsph, wcsph");
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {

@@ -13,7 +13,7 @@ std::unique_ptr<ParticlePool> makePool(const std::string& name) {
 }
 
 double reachOf(const WorldDef& def) {
-  const double fluid = def.fluid ? kernel::kSupport * def.fluid->spacing : 0.0;
+  const double fluid = def.fluid ? supportOf(*def.fluid) : 0.0;
   const double bullet = def.bullet ? 2.0 * def.bullet->radius : 0.0;
   const double domain = 1e-3 * def.domain.box.size().norm();  // a world without particles still has fields
   return std::max(fluid, bullet) > 0.0 ? std::max(fluid, bullet) : domain;
@@ -22,9 +22,9 @@ double reachOf(const WorldDef& def) {
 // A particle must not be its own neighbour's neighbour twice; found in a step, this would be an exception there.
 void checkPeriod(const WorldDef& def) {
   const Vec2 size = def.domain.box.size();
-  const double least = 8.0 * def.fluid->spacing;
+  const double least = 4.0 * supportOf(*def.fluid);
   if ((def.domain.periodicX && size.x() < least) || (def.domain.periodicY && size.y() < least)) {
-    throw Error("a fluid's domain must be at least 8 spacings long along a periodic axis");
+    throw Error("a fluid's domain must be at least four kernel radii long (8 spacings; with wcsph 4 times its support) along a periodic axis");
   }
 }
 

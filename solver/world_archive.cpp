@@ -75,7 +75,12 @@ void World::Impl::archive(Archive& a) {
     archiveBodyStates(a, bodyStates, flat);
     if (bodies.anyFree()) rigid.archive(bodies, a);
   });
-  if (fluid != nullptr) section(a, "fluid", [&] { fluid->archive(a); });
+  if (fluid != nullptr) {
+    section(a, "fluid", [&] {
+      fluid->archive(a);
+      fluidModel->archive(a);
+    });
+  }
   if (bullets != nullptr) section(a, "bullets", [&] { bullets->archive(a); });
   for (std::size_t k = 0; k < emitters.size(); ++k) {
     section(a, ("emitter" + std::to_string(k)).c_str(), [&] { emitters[k].archive(a); });

@@ -74,7 +74,7 @@ void Dfsph::findArrangement(const StepContext& context, ParticlePool& pool) {
 // λ grows where a wall comes nearer: the same as if the particle went the other way.
 void Dfsph::findWallGain(const StepContext& context) {
   std::fill(wallGain_.begin(), wallGain_.end(), 0.0f);
-  const double scale = context.dt / dx_;
+  const double scale = context.dt / unit_;
   walls_.forEachLink([&](const WallLink& link) {
     if (link.owner < 0) return;
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
@@ -138,7 +138,7 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
   const auto vx = pool.vx(), vy = pool.vy();
   const auto pressure = pool.column(pressure_);
   const auto unit = static_cast<float>(pressureUnit(context.dt));
-  const double way = context.dt / dx_;
+  const double way = context.dt / unit_;
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       totalX_[i] = static_cast<float>(way * vx[i]);

@@ -9,6 +9,9 @@
 
 namespace froude {
 
+/// Reach of a particle of that model [m].
+double supportOf(const FluidDef& def);
+
 /// A bound on the sub-step and its name.
 struct StepBound {
   double dt = kInfinity;  // [s]
@@ -33,6 +36,8 @@ class FluidModel {
   virtual StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const = 0;
   /// One sub-step: velocities and positions to the end of it. The pool comes out sorted by cell.
   virtual void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) = 0;
+  /// State beside the pool's columns, if there is any.
+  virtual void archive(Archive&) {}
   virtual std::size_t memoryBytes() const = 0;
 };
 

@@ -103,6 +103,24 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
+/// What displacements u make of densities in an acoustic step, with diffusion: next = ρ' + Σ (uᵢ − uⱼ)·Bᵢ∇W + u·g + λ' +
+/// diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ)), ρ' = ρ/ρ0 − 1 and G its gradient, taken from the acceleration
+/// by pressures: G = slope·a. The second term is zero where ρ' is linear (Antuono et al. 2010, eq. 9).
+struct RateLoop {
+  const float* ux = nullptr;  // [dx]
+  const float* uy = nullptr;
+  const float* excess = nullptr;  // ρ'
+  const float* ax = nullptr;      // displacement by the pressures [dx]
+  const float* ay = nullptr;
+  Matrices<const float> correction;  // B
+  float slope = 0.0f;
+  float diffusion = 0.0f;
+  const float* wallX = nullptr;  // null: no walls near any particle
+  const float* wallY = nullptr;
+  const float* wallGain = nullptr;
+  float* next = nullptr;
+};
+
 /// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it. Behind the wall the
 /// pressure rises along it as in front: of the component along the wall the share λ is missing and is made up for.
 struct DisplacementLoop {
@@ -158,6 +176,7 @@ struct PairLoops {
   void (*push)(const PairFrame&, const PushLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
+  void (*rate)(const PairFrame&, const RateLoop&, std::size_t begin, std::size_t end);
 };
 
 /// Plain C++ in the order of the formulas: the oracle of the wide versions.

@@ -196,6 +196,24 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
   });
 }
 
+void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sum = 0.0f;
+    const float ux = loop.ux[i], uy = loop.uy[i], excess = loop.excess[i], ax = loop.ax[i], ay = loop.ay[i];
+    const float xx = loop.correction.xx[i], xy = loop.correction.xy[i], yy = loop.correction.yy[i];
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
+      const float m3 = m * m * m;
+      const float away = (ux - loop.ux[j]) * (xx * dx + xy * dy) + (uy - loop.uy[j]) * (xy * dx + yy * dy);
+      const float along = 0.5f * ((ax + loop.ax[j]) * dx + (ay + loop.ay[j]) * dy);
+      const float jump = loop.excess[j] - excess + loop.slope * along;
+      sum += m3 * (1.0f + 2.5f * kTail * (m3 * m3)) * (away - loop.diffusion * jump);
+    });
+    float gain = -2.0f * kNorm * sum;
+    if (loop.wallX != nullptr) gain += loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallGain[i];
+    loop.next[i] = excess + gain;
+  });
+}
+
 }  // namespace
 
 void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, const HiddenPairs& hidden,
@@ -225,7 +243,7 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
 }
 
 const PairLoops& scalarPairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, rate};
   return kLoops;
 }
 

@@ -1,294 +1,17 @@
 // The pair loops over SIMD lanes, compiled once for each target. The formulas are those of pair_loops_scalar.cpp.
-#include <froude/solver/fluid/kernel.h>
-#include <froude/solver/fluid/lattice.h>
-#include <froude/solver/fluid/pair_loops.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "froude/solver/fluid/pair_loops_wide.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// A lambda of an inner loop, which must become part of the loop.
-#ifndef FROUDE_INLINE
-#define FROUDE_INLINE HWY_ATTR __attribute__((always_inline))
-#endif
+#include <froude/solver/fluid/pair_sweep_wide.h>
 
 #if HWY_TARGET != HWY_SCALAR  // scalar is pair_loops_scalar.cpp
 HWY_BEFORE_NAMESPACE();
 namespace froude {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-
-constexpr float kUnit = 1.0f / static_cast<float>(lattice::kUnitsPerSpacing);
-constexpr auto kNorm = static_cast<float>(kernel::kNorm);
-constexpr auto kTail = static_cast<float>(kernel::kTail);
-
-// The kernel without its factor, from m and m³.
-HWY_INLINE VF shapeOf(VF m, VF m3) {
-  const F f;
-  return hn::Mul(hn::Mul(m3, m), hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, kTail), hn::Set(f, 1.0f)));
-}
-
-// The gradient's factor without −2·kNorm, from m³.
-HWY_INLINE VF slopeOf(VF m3) {
-  const F f;
-  return hn::Mul(m3, hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, 2.5f * kTail), hn::Set(f, 1.0f)));
-}
-
-constexpr std::uint32_t kLanes = HWY_LANES(float);
-constexpr std::uint32_t kRows = 16;  // particles whose sums are reduced together
-constexpr float kFar = 1.0e6f;       // half spacings: out of every support
-
-// The candidates of a cell that is not usual: runs of indices and what to take off the asking particle's coordinates.
-struct Runs {
-  struct Run {
-    std::uint32_t begin, end;
-    std::int32_t shiftX, shiftY;
-  };
-  std::uint32_t count = 0;
-  Run run[9];
-};
-
-HWY_INLINE void collectRuns(const PairFrame& frame, std::uint32_t cell, Runs& runs) {
-  runs.count = 0;
-  frame.grid->forEachRun(cell, [&](const CellRun& r) {
-    const std::int32_t shiftX = r.shiftX > 0.0 ? frame.periodX : r.shiftX < 0.0 ? -frame.periodX : 0;
-    const std::int32_t shiftY = r.shiftY > 0.0 ? frame.periodY : r.shiftY < 0.0 ? -frame.periodY : 0;
-    runs.run[runs.count++] = {r.begin, r.end, shiftX, shiftY};
-  });
-}
-
-// The candidates of a cell, in half spacings from a reference in the cell, and up to two values of each; lanes without
-// a candidate are out of reach. The usual cell has three runs of at most 16, which stay in registers; what three longer
-// ones have beyond 16 shares one more.
-constexpr std::uint32_t kPerRun = CellRuns::kUsual / kLanes;
-constexpr std::uint32_t kVectors = 3 * kPerRun;
-template <int kValues>
-struct UsualCell {
-  VF x[kVectors + kPerRun], y[kVectors + kPerRun], value[kValues > 0 ? kValues : 1][kVectors + kPerRun];
-};
-
-template <int kValues>
-HWY_INLINE void loadUsual(const PairFrame& frame, const CellRuns& runs, const float* const* values,
-                          UsualCell<kValues>& c) {
-  const F f;
-  const I n;
-  const VF scale = hn::Set(f, 0.5f * kUnit), far = hn::Set(f, kFar);
-  const VI fromX = hn::Set(n, frame.x[runs.first]), fromY = hn::Set(n, frame.y[runs.first]);
-  HWY_UNROLL(12)
-  for (std::uint32_t v = 0; v < kVectors; ++v) {
-    const std::uint32_t k = v % kPerRun * kLanes, j = runs.begin[v / kPerRun] + k;
-    const std::uint32_t count = runs.count[v / kPerRun];
-    const auto inside = hn::FirstN(f, count > k ? count - k : 0);
-    const VF dx = hn::ConvertTo(f, hn::Sub(hn::LoadU(n, frame.x + j), fromX));
-    c.x[v] = hn::IfThenElse(inside, hn::Mul(dx, scale), far);
-    c.y[v] = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::LoadU(n, frame.y + j), fromY)), scale);
-    for (int a = 0; a < kValues; ++a) c.value[a][v] = hn::IfThenElseZero(inside, hn::LoadU(f, values[a] + j));
-  }
-}
-
-// Blocks of four lanes, added up.
-template <typename D, typename V>
-HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> foldToFour(D d, V v) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    return v;
-  } else {
-    const hn::Half<D> half;
-    return foldToFour(half, hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
-  }
-}
-
-// The lanes of each of four vectors, summed.
-HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> sumsOfFour(VF a, VF b, VF c, VF d) {
-  const F f;
-  const hn::RepartitionToWide<F> pairs;
-  const VF ab = hn::Add(hn::InterleaveLower(f, a, b), hn::InterleaveUpper(f, a, b));
-  const VF cd = hn::Add(hn::InterleaveLower(f, c, d), hn::InterleaveUpper(f, c, d));
-  const auto ab2 = hn::BitCast(pairs, ab), cd2 = hn::BitCast(pairs, cd);
-  const VF abcd = hn::Add(hn::BitCast(f, hn::InterleaveLower(pairs, ab2, cd2)),
-                          hn::BitCast(f, hn::InterleaveUpper(pairs, ab2, cd2)));
-  return foldToFour(f, abcd);
-}
-
-// Up to kLanes values of which only `count` may be touched: neighbours belong to another task.
-HWY_INLINE VF loadSome(const float* from, std::uint32_t count) {
-  const F f;
-  if (HWY_LIKELY(count >= kLanes)) return hn::LoadU(f, from);
-  alignas(64) float values[kLanes] = {};
-  for (std::uint32_t k = 0; k < count; ++k) values[k] = from[k];
-  return hn::Load(f, values);
-}
-
-HWY_INLINE void storeSome(VF v, float* to, std::uint32_t count) {
-  const F f;
-  if (HWY_LIKELY(count >= kLanes)) {
-    hn::StoreU(v, f, to);
-    return;
-  }
-  alignas(64) float values[kLanes];
-  hn::Store(v, f, values);
-  for (std::uint32_t k = 0; k < count; ++k) to[k] = values[k];
-}
-
-// lattice::sum of coordinates and a displacement in spacings.
-HWY_INLINE void storeMoved(const std::int32_t* from, VF spacings, std::int32_t* to, std::uint32_t count) {
-  const F f;
-  const I n;
-  const VI units = hn::NearestInt(hn::Mul(spacings, hn::Set(f, 1.0f / kUnit)));
-  if (HWY_LIKELY(count >= kLanes)) {
-    hn::StoreU(hn::Add(hn::LoadU(n, from), units), n, to);
-    return;
-  }
-  alignas(64) std::int32_t values[kLanes];
-  hn::Store(units, n, values);
-  for (std::uint32_t k = 0; k < count; ++k) to[k] = lattice::sum(from[k], values[k]);
-}
-
-// The candidates beyond the 16th of each run.
-template <int kValues>
-HWY_INLINE void loadBeyond(const PairFrame& frame, const CellRuns& runs, const float* const* values,
-                           UsualCell<kValues>& c) {
-  const F f;
-  const I n;
-  alignas(64) std::int32_t x[CellRuns::kUsual], y[CellRuns::kUsual];
-  alignas(64) float value[kValues + 1][CellRuns::kUsual] = {};
-  std::uint32_t count = 0;
-  for (std::uint32_t r = 0; r < 3; ++r) {
-    for (std::uint32_t k = CellRuns::kUsual; k < runs.count[r]; ++k, ++count) {
-      x[count] = frame.x[runs.begin[r] + k];
-      y[count] = frame.y[runs.begin[r] + k];
-      for (int a = 0; a < kValues; ++a) value[a][count] = values[a][runs.begin[r] + k];
-    }
-  }
-  for (std::uint32_t k = count; k < CellRuns::kUsual; ++k) x[k] = y[k] = 0;
-  const VF scale = hn::Set(f, 0.5f * kUnit), far = hn::Set(f, kFar);
-  const VI fromX = hn::Set(n, frame.x[runs.first]), fromY = hn::Set(n, frame.y[runs.first]);
-  for (std::uint32_t v = 0; v < kPerRun; ++v) {
-    const std::uint32_t k = v * kLanes;
-    const auto inside = hn::FirstN(f, count > k ? count - k : 0);
-    const VF dx = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Load(n, x + k), fromX)), scale);
-    c.x[kVectors + v] = hn::IfThenElse(inside, dx, far);
-    c.y[kVectors + v] = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Load(n, y + k), fromY)), scale);
-    for (int a = 0; a < kValues; ++a) c.value[a][kVectors + v] = hn::Load(f, value[a] + k);
-  }
-}
-
-// Any other cell: runs of any number and length, seams, candidates behind walls. One particle; vector(dx, dy, m, j,
-// live) for each vector of candidates.
-template <typename Vector>
-HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uint32_t i, const Vector& vector) {
-  const F f;
-  const I n;
-  const VF one = hn::Set(f, 1.0f), scale = hn::Set(f, 0.5f * kUnit);
-  const std::int32_t hidden = frame.hidden.offset != nullptr ? frame.hidden.offset[i] : -1;
-  const std::uint64_t* words = frame.hidden.words + (hidden >= 0 ? hidden : 0);
-  for (std::uint32_t r = 0; r < runs.count; ++r) {
-    const Runs::Run& run = runs.run[r];
-    const VI xi = hn::Set(n, lattice::difference(frame.x[i], run.shiftX));
-    const VI yi = hn::Set(n, lattice::difference(frame.y[i], run.shiftY));
-    for (std::uint32_t j = run.begin; j < run.end; j += kLanes) {
-      const auto inside = hn::FirstN(f, run.end - j);
-      const VF dx = hn::Mul(hn::ConvertTo(f, hn::Sub(xi, hn::LoadU(n, frame.x + j))), scale);
-      const VF dy = hn::Mul(hn::ConvertTo(f, hn::Sub(yi, hn::LoadU(n, frame.y + j))), scale);
-      VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
-      m = hn::IfThenElseZero(inside, m);
-      if (hidden >= 0) {
-        const std::uint32_t k = j - run.begin;
-        const std::uint64_t bits = words[k / 64] >> (k % 64);
-        m = hn::IfThenElseZero(hn::LoadMaskBits(f, reinterpret_cast<const std::uint8_t*>(&bits)), m);
-      }
-      vector(dx, dy, m, j, inside);
-    }
-    if (hidden >= 0) words += (run.end - run.begin + 63) / 64;
-  }
-}
-
-// The particles of cells [begin, end). For each, add(m, dx, dy, own, other, sums) over vectors of candidates: dx, dy in
-// half spacings from candidate to particle, m = max(0, 1 − q²/4), 0 in lanes without a visible neighbour, own and other
-// the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums
-// of up to kLanes particles from i on, one a lane.
-template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
-HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
-                           const Add& add, const Finish& finish) {
-  const F f;
-  const I n;
-  const VF one = hn::Set(f, 1.0f), scale = hn::Set(f, 0.5f * kUnit);
-  alignas(64) float rows[kSums][kRows][kLanes] = {};
-  std::uint32_t filled = 0;
-  auto finishRows = [&](std::uint32_t last) FROUDE_INLINE {
-    alignas(64) float total[kSums][kRows];
-    const hn::FixedTag<float, 4> four;
-    for (int s = 0; s < kSums; ++s) {
-      for (std::uint32_t r = 0; r < kRows; r += 4) {
-        hn::Store(sumsOfFour(hn::Load(f, rows[s][r]), hn::Load(f, rows[s][r + 1]), hn::Load(f, rows[s][r + 2]),
-                             hn::Load(f, rows[s][r + 3])),
-                  four, total[s] + r);
-      }
-    }
-    for (std::uint32_t r = 0; r < filled; r += kLanes) {
-      VF sums[kSums];
-      for (int s = 0; s < kSums; ++s) sums[s] = hn::Load(f, total[s] + r);
-      finish(last - filled + r, filled - r, sums);
-    }
-    filled = 0;
-  };
-  auto begun = [&](std::uint32_t i, VF* own, VF* sums) FROUDE_INLINE {
-    for (int a = 0; a < kValues + kOwn; ++a) own[a] = hn::Set(f, values[a][i]);
-    for (int s = 0; s < kSums; ++s) sums[s] = hn::Zero(f);
-  };
-  auto done = [&](std::uint32_t i, const VF* sums) FROUDE_INLINE {
-    for (int s = 0; s < kSums; ++s) hn::Store(sums[s], f, rows[s][filled]);
-    if (++filled == kRows) finishRows(i + 1);
-  };
-  VF own[kValues + kOwn + 1], other[kValues + 1], sums[kSums];
-  auto sweepUsual = [&](const CellRuns& cell, const UsualCell<kValues>& c, const std::uint32_t vectors) FROUDE_INLINE {
-    const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
-    for (std::uint32_t i = cell.first; i < cell.last; ++i) {
-      const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), fromX)), scale);
-      const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), fromY)), scale);
-      begun(i, own, sums);
-      HWY_UNROLL(16)
-      for (std::uint32_t v = 0; v < vectors; ++v) {
-        const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
-        const VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
-        for (int a = 0; a < kValues; ++a) other[a] = c.value[a][v];
-        add(m, dx, dy, own, other, sums);
-      }
-      done(i, sums);
-    }
-  };
-  for (std::size_t k = begin; k < end; ++k) {
-    const CellRuns& cell = frame.runs[k];
-    if (HWY_LIKELY(cell.kind == CellRuns::Kind::Usual)) {
-      UsualCell<kValues> c;
-      loadUsual<kValues>(frame, cell, values, c);
-      sweepUsual(cell, c, kVectors);
-    } else if (HWY_LIKELY(cell.kind == CellRuns::Kind::Long)) {
-      UsualCell<kValues> c;
-      loadUsual<kValues>(frame, cell, values, c);
-      loadBeyond<kValues>(frame, cell, values, c);
-      sweepUsual(cell, c, kVectors + kPerRun);
-    } else {
-      Runs runs;
-      collectRuns(frame, frame.cells[k], runs);
-      for (std::uint32_t i = cell.first; i < cell.last; ++i) {
-        begun(i, own, sums);
-        forEachVector(frame, runs, i, [&](VF dx, VF dy, VF m, std::uint32_t j, auto inside) FROUDE_INLINE {
-          for (int a = 0; a < kValues; ++a) other[a] = hn::IfThenElseZero(inside, hn::LoadU(f, values[a] + j));
-          add(m, dx, dy, own, other, sums);
-        });
-        done(i, sums);
-      }
-    }
-    if (k + 1 == end && filled > 0) finishRows(cell.last);
-  }
-}
 
 // The change of κ for a gain of density, whose share of the excess goes to `excess`.
 HWY_INLINE void changePressure(const PressureUpdate& update, std::uint32_t i, std::uint32_t count, VF gain, VF diagonal,
@@ -514,10 +237,36 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
       });
 }
 
+void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
+  const F f;
+  const Matrices<const float>& b = loop.correction;
+  const float* const values[8] = {loop.ux, loop.uy, loop.excess, loop.ax, loop.ay, b.xx, b.xy, b.yy};
+  const VF slope = hn::Set(f, loop.slope), diffusion = hn::Set(f, 0.5f * loop.diffusion);
+  sweepCells<1, 5, 3>(
+      frame, begin, end, values,
+      [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
+        const VF px = hn::MulAdd(own[5], dx, hn::Mul(own[6], dy)), py = hn::MulAdd(own[6], dx, hn::Mul(own[7], dy));
+        const VF away = hn::MulAdd(hn::Sub(own[0], other[0]), px, hn::Mul(hn::Sub(own[1], other[1]), py));
+        const VF along = hn::MulAdd(hn::Add(own[3], other[3]), dx, hn::Mul(hn::Add(own[4], other[4]), dy));
+        const VF jump = hn::MulAdd(slope, along, hn::Sub(other[2], own[2]));
+        const VF change = hn::NegMulAdd(diffusion, jump, away);
+        sums[0] = hn::MulAdd(slopeOf(hn::Mul(m, hn::Mul(m, m))), change, sums[0]);
+      },
+      [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
+        VF next = hn::MulAdd(hn::Set(f, -4.0f * kNorm), sums[0], loadSome(loop.excess + i, count));
+        if (loop.wallX != nullptr) {
+          next = hn::MulAdd(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count), next);
+          next = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), next);
+          next = hn::Add(next, loadSome(loop.wallGain + i, count));
+        }
+        storeSome(next, loop.next + i, count);
+      });
+}
+
 }  // namespace
 
 const PairLoops& widePairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, rate};
   return kLoops;
 }
 

@@ -8,6 +8,7 @@
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/lattice.h>
+#include <froude/solver/fluid/lattice_sums.h>
 
 namespace froude {
 namespace {
@@ -29,17 +30,18 @@ Vec2 alongWalls(Vec2 v, const PathResult& path) {
 ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, ParticlePool& pool, const Settings& settings)
     : def_(def),
       domain_(domain),
-      dx_(def.spacing),
+      unit_(supportOf(def) / kernel::kSupport),
+      volume_(latticeVolume(def.spacing / unit_)),
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
-      walls_(def.spacing, {def.group, def.collidesWith}),
+      walls_(unit_, latticeRecession(def.spacing / unit_), {def.group, def.collidesWith}),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }
 
-double ParticleFluid::supportRadius() const { return kernel::kSupport * dx_; }
-double ParticleFluid::particleMass() const { return def_.density * dx_ * dx_; }
-double ParticleFluid::pressureUnit(double dt) const { return dt * dt / (dx_ * dx_); }
+double ParticleFluid::supportRadius() const { return kernel::kSupport * unit_; }
+double ParticleFluid::particleMass() const { return def_.density * def_.spacing * def_.spacing; }
+double ParticleFluid::pressureUnit(double dt) const { return dt * dt / (unit_ * unit_); }
 
 StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound;
@@ -154,7 +156,7 @@ void ParticleFluid::sortByCell(const StepContext& context, ParticlePool& pool) {
               fluidFrame(domain_, {predictedX_.data(), n}, {predictedY_.data(), n}, kCellSlack * supportRadius()));
   if (!grid_.sorted()) pool.permute(grid_.order());
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const double perSpacing = 1.0 / dx_;
+  const double perSpacing = 1.0 / unit_;
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       predictedX_[i] = x[i] + context.dt * vx[i];
@@ -184,8 +186,8 @@ void ParticleFluid::holdCarried(bool asVelocity) {
     const std::uint32_t i = c.particle;
     if (asVelocity) c.spared += Vec2(static_cast<double>(shiftX_[i]), static_cast<double>(shiftY_[i]));
     shiftX_[i] = shiftY_[i] = 0.0f;
-    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
-    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
+    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / unit_);
+    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / unit_);
   }
 }
 
@@ -198,7 +200,7 @@ void ParticleFluid::meetWalls(const StepContext& context) {
 }
 
 PairFrame ParticleFluid::frame() const {
-  const Vec2 period = domain_.box.size() / dx_;
+  const Vec2 period = domain_.box.size() / unit_;
   return {&grid_,
           occupied_,
           runs_.data(),
@@ -308,8 +310,8 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
   for (std::vector<ParticleLeak>& block : leaks_) block.clear();
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      predictedX_[i] += dx_ * static_cast<double>(shiftX_[i]);
-      predictedY_[i] += dx_ * static_cast<double>(shiftY_[i]);
+      predictedX_[i] += unit_ * static_cast<double>(shiftX_[i]);
+      predictedY_[i] += unit_ * static_cast<double>(shiftY_[i]);
     }
     forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t i) {
       const Vec2 at(x[i], y[i]);
@@ -322,17 +324,17 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
         // Where it stops is one thing, what it keeps of its velocity another: the shift of the stabilisation is no
         // velocity, and one that a wall stops is none either.
         const Vec2 solved =
-            dx_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
+            unit_ * Vec2(static_cast<double>(solvedX_[i] - shiftX_[i]), static_cast<double>(solvedY_[i] - shiftY_[i]));
         const Vec2 before = v + solved / dt;
-        const Vec2 shift = (path.x - at - dt * alongWalls(before, path)) / dx_;
+        const Vec2 shift = (path.x - at - dt * alongWalls(before, path)) / unit_;
         shiftX_[i] = solvedX_[i] + static_cast<float>(shift.x());
         shiftY_[i] = solvedY_[i] + static_cast<float>(shift.y());
         // As it will be computed from the shift, for the books.
         const Vec2 shifted(static_cast<double>(shiftX_[i] - solvedX_[i]),
                            static_cast<double>(shiftY_[i] - solvedY_[i]));
-        const Vec2 after = (path.x - at - dx_ * shifted) / dt;
+        const Vec2 after = (path.x - at - unit_ * shifted) / dt;
         // It is not where its density was found: to the next sub-step it is new.
-        if ((path.x - to).norm() > kDisplaced * dx_) density[i] = 0.0f;
+        if ((path.x - to).norm() > kDisplaced * unit_) density[i] = 0.0f;
         to = path.x;
         path.x = at + dt * after;
         contacts_.addMean(i, path, at, before, dt);
@@ -352,8 +354,8 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
     });
     for (std::size_t i = begin; i < end; ++i) {
       // The shift of the stabilisation is no velocity.
-      vx[i] = (predictedX_[i] - x[i] - dx_ * static_cast<double>(shiftX_[i] - solvedX_[i])) * rate;
-      vy[i] = (predictedY_[i] - y[i] - dx_ * static_cast<double>(shiftY_[i] - solvedY_[i])) * rate;
+      vx[i] = (predictedX_[i] - x[i] - unit_ * static_cast<double>(shiftX_[i] - solvedX_[i])) * rate;
+      vy[i] = (predictedY_[i] - y[i] - unit_ * static_cast<double>(shiftY_[i] - solvedY_[i])) * rate;
       x[i] = predictedX_[i];
       y[i] = predictedY_[i];
     }
@@ -369,7 +371,7 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
   contacts_.book(particleMass(), impulses);
   // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did
   // there.
-  const double unit = particleMass() * dx_ / dt;
+  const double unit = particleMass() * unit_ / dt;
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
     const Vec2 gradient(link.gradientX, link.gradientY);
@@ -405,7 +407,7 @@ void ParticleFluid::bookCarried(const StepContext& context, const ParticlePool& 
   for (const Carried& c : carried_) {
     const Vec2 at(pool.x()[c.particle], pool.y()[c.particle]), v(pool.vx()[c.particle], pool.vy()[c.particle]);
     const Vec2 fall = context.dt * context.gravity.at(at, context.time);
-    impulses.add(-1, at, particleMass() * (dx_ / context.dt * c.spared + fall), v);
+    impulses.add(-1, at, particleMass() * (unit_ / context.dt * c.spared + fall), v);
   }
 }
 

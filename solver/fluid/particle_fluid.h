@@ -10,17 +10,19 @@
 #include <froude/solver/fluid/body_response.h>
 #include <froude/solver/fluid/coarse_pressure.h>
 #include <froude/solver/fluid/fluid_model.h>
+#include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/pair_loops.h>
 #include <froude/solver/fluid/wall_layer.h>
 
 namespace froude {
 
-/// Lengths of the solve are in spacings dx, pressures are κ = p·dt²/(ρ dx²).
+/// Lengths of the solve are in units of half a kernel's support radius, which is the spacing dx but for wcsph; pressures
+/// are κ = p·dt²/(ρ·unit²).
 class ParticleFluid : public FluidModel {
  public:
   double supportRadius() const final;
   double particleMass() const final;
-  StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const final;
+  StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) final;
   std::size_t memoryBytes() const override;
 
@@ -66,7 +68,10 @@ class ParticleFluid : public FluidModel {
 
   FluidDef def_;
   DomainDef domain_;
-  double dx_;
+  double unit_;    // [m]
+  double volume_;  // of a particle in units², over the kernel's sum on its lattice
+  // Share of a velocity's Laplacian that Morris' term feels.
+  double laplacianMoment_ = kernel::kLaplacianMoment;
   ColumnId<float> pressure_, density_;
   CellGrid grid_;
   WallLayer walls_;
@@ -108,7 +113,7 @@ class ParticleFluid : public FluidModel {
   void findCarried(const StepContext& context, const ParticlePool& pool);
   void bookCarried(const StepContext& context, const ParticlePool& pool, ImpulseLedger& impulses) const;
   void resizeScratch(std::size_t n);
-  BodyResponse::Units bodyUnits(double dt) const { return {dx_, particleMass(), particleMass() * dx_ / dt}; }
+  BodyResponse::Units bodyUnits(double dt) const { return {unit_, particleMass(), particleMass() * unit_ / dt}; }
   /// p/ρ [m²/s²].
   struct PressureScale {
     double largest, typical;

@@ -31,7 +31,7 @@ Vec2 surfaceVelocity(const StepContext& context, const WallLink& link, const Vec
 // A solve follows the diffusion across the whole fluid in time; what is smaller follows the flow around it.
 void ParticleFluid::tightenByViscosity(const ParticlePool& pool, StepBound& bound) const {
   if (def_.viscosity == 0.0) return;
-  const double term = kExplicit * dx_ * dx_ / def_.viscosity;
+  const double term = kExplicit * unit_ * unit_ / def_.viscosity;
   const bool solves = def_.viscositySolver == ViscositySolver::Implicit ||
                       (def_.viscositySolver == ViscositySolver::Auto && bound.dt > kWorthwhile * term);
   if (!solves) return bound.tighten(term, StepLimit::Viscosity);
@@ -56,7 +56,7 @@ double ParticleFluid::smallerExtent(const ParticlePool& pool) const {
         [](const Range& a, const Range& b) {
           return Range{std::min(a.low, b.low), std::max(a.high, b.high)};
         });
-    return at.empty() ? whole : all.high - all.low + dx_;
+    return at.empty() ? whole : all.high - all.low + unit_;
   };
   const Vec2 whole = domain_.box.size();
   if (domain_.periodicX) return extent(pool.y(), whole.y());
@@ -73,11 +73,11 @@ void ParticleFluid::applyViscosity(const StepContext& context, ParticlePool& poo
     }
   });
   const double stiffness = pressureUnit(context.dt) * largestPressure_;
-  const double viscous = def_.viscosity * context.dt / (dx_ * dx_);
+  const double viscous = def_.viscosity * context.dt / (unit_ * unit_);
   const ViscosityLoop loop{velocityX_.data(),
                            velocityY_.data(),
-                           static_cast<float>(settings_.smoothing * std::sqrt(stiffness)),
-                           static_cast<float>(2.0 * viscous / kernel::kLaplacianMoment),
+                           static_cast<float>(settings_.smoothing * std::sqrt(stiffness) * volume_),
+                           static_cast<float>(2.0 * viscous * volume_ / laplacianMoment_),
                            smoothX_.data(),
                            smoothY_.data()};
   runViscosity(context, loop);
@@ -110,7 +110,7 @@ void ParticleFluid::spareCarried(const StepContext& context, const float* change
       const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
       c.spared -= static_cast<double>(walls_.lambda()[i]) * along.dot(c.spared) * along;
     }
-    c.spared += context.dt / dx_ * Vec2(static_cast<double>(changeX[i]), static_cast<double>(changeY[i]));
+    c.spared += context.dt / unit_ * Vec2(static_cast<double>(changeX[i]), static_cast<double>(changeY[i]));
   }
 }
 
@@ -128,7 +128,7 @@ void ParticleFluid::smoothVelocities(ParticlePool& pool) {
 // Implicit, v = (v + Σ c v_wall)/(1 + Σ c): a particle on a wall moves with it, on any step.
 void ParticleFluid::dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const {
   if (def_.viscosity == 0.0 || !context.obstacles.anySticks()) return;
-  const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
+  const double unit = 2.0 * def_.viscosity * context.dt / (unit_ * unit_);
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   walls_.forEachParticle([&](std::span<const WallLink> links) {
     const std::uint32_t i = links.front().particle;
@@ -170,9 +170,9 @@ void ParticleFluid::startVelocitySolve(const StepContext& context, const Particl
     }
   });
   for (const Carried& c : carried_) diagonal_[c.particle] = 0.0f;
-  dragged_.begin(context.freeBodies, dx_, particleMass());
+  dragged_.begin(context.freeBodies, unit_, particleMass());
   if (!context.obstacles.anySticks()) return;
-  const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_);
+  const double unit = 2.0 * def_.viscosity * context.dt / (unit_ * unit_);
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
     if (link.drag == 0.0f || diagonal_[i] == 0.0f) return;
@@ -296,7 +296,7 @@ void ParticleFluid::takeSolvedVelocities(const StepContext& context, ParticlePoo
     }
   });
   if (!context.obstacles.anySticks()) return;
-  const double unit = 2.0 * def_.viscosity * context.dt / (dx_ * dx_) * particleMass();
+  const double unit = 2.0 * def_.viscosity * context.dt / (unit_ * unit_) * particleMass();
   dragged_.take(shiftX_.data(), shiftY_.data());
   std::size_t toBodies = 0;
   walls_.forEachLink([&](const WallLink& link) {

@@ -9,10 +9,6 @@ namespace froude {
 
 namespace {
 
-// A row of particles half a spacing from a flat wall sees λ plus the lattice sum of a half space, which is 1 only if
-// the wall stands back by this much (in spacings): a lattice is not a continuum. Else a block at rest would start
-// over-dense.
-constexpr double kRecession = 0.0856018;
 constexpr float kMostFilled = 0.6f;  // a particle with more wall around it has no one wall to go along
 // A particle with more wall round it than this, by walls that face each other, is a film that is not resolved (the gap
 // is narrower than about 0.8 of a spacing). One row of particles can not give way to what shuts the gap.
@@ -25,15 +21,15 @@ Vec2 outwardNormal(const WallEdge& e) { return rightNormal(e.b - e.a).normalized
 
 // Moves each edge into its solid by the recession, edges that share a vertex together. Those that look away from the
 // particle are dropped unless `all` are asked for. Returns how many are left.
-std::size_t recede(std::span<WallEdge> edges, bool all) {
+std::size_t recede(std::span<WallEdge> edges, double recession, bool all) {
   std::array<Vec2, kMaxWallEdges> startShift, endShift;
-  for (std::size_t i = 0; i < edges.size(); ++i) startShift[i] = endShift[i] = -kRecession * outwardNormal(edges[i]);
+  for (std::size_t i = 0; i < edges.size(); ++i) startShift[i] = endShift[i] = -recession * outwardNormal(edges[i]);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     for (std::size_t j = 0; j < edges.size(); ++j) {
       if (i == j || edges[i].owner != edges[j].owner || edges[i].b != edges[j].a) continue;
       const Vec2 n = outwardNormal(edges[i]), m = outwardNormal(edges[j]);
       const double along = 1.0 + n.dot(m);  // the miter is (n + m)/along long
-      const Vec2 shift = -kRecession * (n + m) / std::max(along, 2.0 / (kLongestMiter * kLongestMiter));
+      const Vec2 shift = -recession * (n + m) / std::max(along, 2.0 / (kLongestMiter * kLongestMiter));
       endShift[i] = shift;
       startShift[j] = shift;
     }
@@ -116,7 +112,7 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   std::array<WallEdge, kMaxWallEdges> whole;
   const bool drag = obstacles.anySticks();
   if (drag) std::copy_n(buffer.begin(), n, whole.begin());
-  const std::size_t front = recede({buffer.data(), n}, thick);
+  const std::size_t front = recede({buffer.data(), n}, recession_, thick);
   std::array<WallShare, kMaxWallEdges> shares;
   const std::size_t owners =
       thick ? integrateSolids({buffer.data(), front}, shares) : integrateWalls({buffer.data(), front}, shares);

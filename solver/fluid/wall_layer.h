@@ -25,8 +25,10 @@ struct WallLink {
 /// Built once a sub-step at the predicted positions; memory is reused from step to step.
 class WallLayer {
  public:
-  /// spacing dx [m] is the unit of λ's gradient; filter: of the fluid.
-  WallLayer(double spacing, CollisionFilter filter) : spacing_(spacing), filter_(filter) {}
+  /// spacing: the unit of λ's gradient, half a kernel's support radius [m]; recession: by how much walls stand back, in
+  /// these units (`latticeRecession`); filter: of the fluid.
+  WallLayer(double spacing, double recession, CollisionFilter filter)
+      : spacing_(spacing), recession_(recession), filter_(filter) {}
 
   /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a
   /// look-up a particle, and the wall integral for those within the support radius of a wall.
@@ -80,7 +82,7 @@ class WallLayer {
   void findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
                   std::span<const double> y, std::uint32_t i, Block& block);
 
-  double spacing_;
+  double spacing_, recession_;
   CollisionFilter filter_;
   AlignedArray<float> lambda_, gradientX_, gradientY_, tangent_;
   AlignedArray<std::int32_t> offset_;

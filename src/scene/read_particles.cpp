@@ -63,6 +63,19 @@ FluidDef readFluidDef(TableReader& fluid) {
   return def;
 }
 
+constexpr std::array<const char*, 6> kCompressibleKeys{"support",           "sound_speed",       "density_diffusion", "artificial_viscosity",
+                                                       "background_pressure", "equation_of_state"};
+
+void readCompressible(TableReader& model, CompressibleDef& def) {
+  def.support = model.number("support", Range::between(2.0, 6.0), def.support);
+  if (const auto c = model.optionalNumber("sound_speed", Range::positive(1e6))) def.soundSpeed = *c;
+  def.densityDiffusion = model.number("density_diffusion", Range::between(0.0, 1.0), def.densityDiffusion);
+  def.artificialViscosity = model.number("artificial_viscosity", Range::between(0.0, 1.0), 0.0);
+  def.backgroundPressure = model.number("background_pressure", Range::notNegative(1e12), 0.0);
+  def.equation = model.word("equation_of_state", {"linear", "tait"}, "linear") == "tait" ? EquationOfState::Tait
+                                                                                           : EquationOfState::Linear;
+}
+
 void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) {
   std::vector<std::string> here, absent;
   for (const char* name : {"pbf", "dfsph", "wcsph", "apic"})
@@ -80,6 +93,7 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
                         : solver == "explicit" ? ViscositySolver::Explicit
                                                : ViscositySolver::Implicit;
+  if (def.model == "wcsph") readCompressible(model, def.compressible);
   draft.scene.world.timeStep = model.optionalNumber("time_step", Range::positive(1e6));
   draft.timeStepPlace = model.place("time_step");
   if (model.has("spacing")) draft.spacingPlace = model.place("spacing");
@@ -118,7 +132,7 @@ void readFluid(TableReader& root, Draft& draft) {
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
   TableReader model =
-      tableOrEmpty(root, "model", {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver"});
+      tableOrEmpty(root, "model", {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support", "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;
