@@ -10,8 +10,8 @@ std::string_view name(StepLimit limit) {
 }
 
 std::string_view name(Trouble trouble) {
-  static constexpr std::array<std::string_view, 5> kNames{"none", "non-finite value", "displacement", "compression",
-                                                          "energy gain"};
+  static constexpr std::array<std::string_view, 6> kNames{"none",        "non-finite value", "displacement",
+                                                          "compression", "energy gain",      "turn of a body"};
   return kNames[static_cast<std::size_t>(trouble)];
 }
 

@@ -29,7 +29,7 @@ enum class StepLimit : int {
 };
 FROUDE_API std::string_view name(StepLimit limit);
 
-enum class Trouble : int { None, NonFinite, Displacement, Compression, EnergyGain };
+enum class Trouble : int { None, NonFinite, Displacement, Compression, EnergyGain, Turn };
 FROUDE_API std::string_view name(Trouble trouble);
 
 /// One accepted sub-step, or the reason why none was.
@@ -37,7 +37,7 @@ struct StepReport {
   double dt = 0.0;                         // time advanced [s]
   int substeps = 0;                        // accepted sub-steps
   int rejected = 0;                        // undone and halved
-  StepLimit limit = StepLimit::Requested;  // of the last sub-step
+  StepLimit limit = StepLimit::Requested;  // of the last sub-step; where none was accepted, of the first one tried
   Trouble trouble = Trouble::None;         // ≠ None: the state is the last sound one, and time stands
   double troubleValue = 0.0;               // what was measured …
   double troubleLimit = 0.0;               // … against what

@@ -28,6 +28,8 @@ class Gravity {
 class LeakRecorder;
 class FreeBodies;
 
+constexpr double kFreeStep = 0.01;  // [s] where nothing binds the step
+
 /// Constant during a sub-step; handed to every stage.
 struct StepContext {
   double time = 0.0;  // at the start [s]
@@ -41,6 +43,8 @@ struct StepContext {
   LeakRecorder* leaks = nullptr;
   /// Null in worlds without free bodies.
   FreeBodies* freeBodies = nullptr;
+  /// The scales of the state that it starts from: of all particles [m/s], of gravity and forces [m/s²].
+  double maxSpeed = 0.0, acceleration = 0.0;
 };
 
 /// A particle met an obstacle.

@@ -11,7 +11,6 @@ constexpr double kLargestBodyTravel = 0.25;  // of the support radius in a sub-s
 // A heap that is thrown together is met in small steps; what is faster yet is followed to its impacts.
 constexpr double kShortestBodyStep = 1.0 / 960.0;  // [s]
 constexpr double kRoom = 0.85;                     // [dx] between a particle that a nozzle lets in and any other
-constexpr double kFreeStep = 0.01;                 // [s] where nothing binds the step
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
 
@@ -28,6 +27,7 @@ StepReport World::substep(double maxDt) {
   w.openAccounts();
   w.feelForce();
   StepBound bound = w.chooseStep(maxDt);
+  const StepLimit first = bound.limit;
   if (w.needsUndo()) w.snapshot.save([&](Archive& a) { w.archive(a); });
   for (int halving = 0;; ++halving) {
     StepStats stats;
@@ -47,6 +47,7 @@ StepReport World::substep(double maxDt) {
     w.events.dropAttempt();
     ++report.rejected;
     if (w.def.timeStep || halving == w.def.limits.halvings) {
+      report.limit = first;
       report.trouble = stats.trouble;
       report.troubleValue = stats.troubleValue;
       report.troubleLimit = stats.troubleLimit;
@@ -149,12 +150,15 @@ void World::Impl::advance(double dt, StepStats& stats) {
                             def.simd,
                             fluidCarried,
                             events.leakRecorder(),
-                            bodies.anyFree() ? &freeBodies : nullptr};
+                            bodies.anyFree() ? &freeBodies : nullptr,
+                            present.maxSpeed,
+                            accelerationScale()};
   pushByForce(dt, stats);
   if (fluidModel != nullptr) {
     impulses.setRecorder(events.listenTo(Species::Fluid, *fluid, bodies, time, dt));
     fluidModel->advance(context, *fluid, impulses, stats);
     events.finishSpecies();
+    if (stats.trouble != Trouble::None) return;  // undone, or the end
   }
   if (ballistic != nullptr) {
     impulses.setRecorder(events.listenTo(Species::Bullet, *bullets, bodies, time, dt));

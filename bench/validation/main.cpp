@@ -10,10 +10,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "validation/rows.h"
 
@@ -31,11 +33,14 @@ constexpr const char* kUsage =
     "  --threads N     threads of the steps (default 1)\n"
     "  --limit SECONDS give a run up whose steps take longer\n"
     "  --rows FILE     append the rows to FILE, CSV\n"
-    "  --list          say what there is, and run nothing\n";
+    "  --list          say what there is, and run nothing\n"
+    "  --help          say this\n"
+    "exit codes: 0 all runs were made, whatever their errors; 2 the command line is wrong; 4 the rows cannot be "
+    "written\n";
 
 struct Options {
   std::vector<std::string> methods, cases;
-  bool quick = false, list = false;
+  bool quick = false, list = false, help = false;
   int threads = 1;
   double limit = kInfinity;  // [s]
   std::string rows;
@@ -46,6 +51,7 @@ std::vector<std::string> words(const std::string& list) {
   std::stringstream stream(list);
   for (std::string word; std::getline(stream, word, ',');)
     if (!word.empty()) out.push_back(word);
+  if (out.empty()) throw Error("'" + list + "' names nothing; leave the option out for all");
   return out;
 }
 
@@ -54,6 +60,10 @@ Options parse(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word == "--help" || word == "-h") {
+      options.help = true;
+      continue;
+    }
     if (word == "--quick" || word == "--list") {
       (word == "--quick" ? options.quick : options.list) = true;
       continue;
@@ -96,11 +106,13 @@ void list(const std::vector<std::string>& methods) {
 
 /// Appends; the heads stand in the first line of a new file.
 void write(const std::string& file, const std::vector<std::string>& lines) {
-  const bool fresh = !std::ifstream(file).good();
+  std::string first;
+  const bool fresh = !std::getline(std::ifstream(file), first);
+  if (!fresh && first != csvHead()) throw Error("--rows " + file + ": holds something else than rows of this program");
   std::ofstream out(file, std::ios::app);
   if (fresh) out << csvHead() << '\n';
   for (const std::string& line : lines) out << line << '\n';
-  if (!out.flush()) throw std::ios_base::failure("cannot write " + file);
+  if (!out.flush()) throw std::system_error(errno, std::generic_category(), "cannot write " + file);
 }
 
 Series run(const Case& entry, const std::string& method, const Options& options) {
@@ -123,10 +135,15 @@ int validate(Options options) {
   expectKnown(options.cases, names, "case");
   if (options.methods.empty()) options.methods = methods;
   if (options.cases.empty()) options.cases = names;
+  if (options.help) {
+    fmt::print("{}", kUsage);
+    return 0;
+  }
   if (options.list) {
     list(methods);
     return 0;
   }
+  if (!options.rows.empty()) write(options.rows, {});  // not after the first hour that it cannot be
   const Context here = context(options.threads);
   if (!here.timed) fmt::print(stderr, "validation: this build is not the one of the preset 'bench': no times\n");
   fmt::print("{}\n", tableHead());
@@ -147,7 +164,7 @@ int validate(Options options) {
 int main(int argc, char** argv) {
   try {
     return validate(parse(argc, argv));
-  } catch (const std::ios_base::failure& e) {
+  } catch (const std::system_error& e) {
     fmt::print(stderr, "validation: {}\n", e.what());
     return 4;
   } catch (const Error& e) {

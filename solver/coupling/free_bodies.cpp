@@ -9,6 +9,14 @@ std::optional<Vec2> FreeBodies::hingeArm(int owner) const {
   return Vec2(-Rotation::of(m.angle + dt_ * m.spin).apply(bodies_.hingeAnchor(i)));
 }
 
+int FreeBodies::overTurned(double most) const {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const auto owner = static_cast<int>(i);
+    if (isFree(owner) && !(turn(owner) < most)) return owner;
+  }
+  return -1;
+}
+
 void FreeBodies::push(int owner, const Wrench& impulse, const Wrench& displacement) {
   const auto i = static_cast<std::size_t>(owner);
   FreeState& f = bodies_.freeState(i);

@@ -36,6 +36,9 @@ class FreeBodies {
   }
   /// The impulse that it is, and how much farther than its motion the body gets by it [m, rad].
   void push(int owner, const Wrench& impulse, const Wrench& displacement);
+  /// The first free body that turns by `most` [rad] or more in the sub-step; −1: none.
+  int overTurned(double most) const;
+  double turn(int owner) const { return std::abs(dt_ * bodies_.motion(static_cast<std::size_t>(owner)).spin); }
   /// Obstacles are where the pushed bodies are. Cost: that of Obstacles::beginStep.
   void settle() { obstacles_.beginStep(bodies_, dt_, reach_); }
 

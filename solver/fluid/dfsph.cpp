@@ -29,6 +29,9 @@ Dfsph::Dfsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool, {kCourant, kTypicalStiffness, kLargestStiffness, kSmoothing}) {}
 
 void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
+  // What the constants below take a sub-step is meant for one that the flow asks for.
+  const StepBound own = flowBound(pool, context.maxSpeed, context.acceleration);
+  pace_ = std::min(1.0, context.dt / std::min(own.dt, kFreeStep));
   findArrangement(context, pool);
   findWallGain(context);
   prepareSystem(pool);
@@ -100,6 +103,7 @@ void Dfsph::prepareSystem(const ParticlePool& pool) {
   const auto pressure = pool.column(pressure_), density = pool.column(density_);
   const Matrices<const float> b = correction_.matrices();
   const bool walls = walls_.any(), open = hasSurface();
+  const float back = kReturn * static_cast<float>(pace_);
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
@@ -108,7 +112,7 @@ void Dfsph::prepareSystem(const ParticlePool& pool) {
       least_[i] = inside ? kNoFloor : 0.0f;
       // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
       // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
-      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -kReturn * std::max(0.0f, density[i] - 1.0f);
+      target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -back * std::max(0.0f, density[i] - 1.0f);
       const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
       const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
       const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
@@ -211,7 +215,7 @@ double Dfsph::runDivergence(const StepContext& context) {
 
 void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   const bool fresh = largestPressure_ == 0.0;  // nothing was there to warm-start from
-  const double tolerance = (fresh ? 0.1 : 1.0) * kTolerance;
+  const double tolerance = (fresh ? 0.1 : 1.0) * pace_ * kTolerance;
   const int most = fresh ? kFreshSweeps : kMaxSweeps;
   bodies_.startFrom({wallGain_.data(), pool.size()});
   bodies_.holdBack(diagonal_.data());

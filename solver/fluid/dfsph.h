@@ -31,6 +31,7 @@ class Dfsph final : public ParticleFluid {
   void giveBack();
   void evenOut();
 
+  double pace_ = 1.0;  // of the sub-step: its length over the one that the flow asks for, at most 1
   GradientCorrection correction_;
   AlignedArray<GradientCorrection::Place> place_;
   AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the solve

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <froude/base/parallel.h>
+#include <froude/solver/coupling/free_bodies.h>
 #include <froude/solver/coupling/leak_check.h>
 #include <froude/solver/fluid/fluid_cells.h>
 #include <froude/solver/fluid/kernel.h>
@@ -13,6 +14,8 @@
 namespace froude {
 namespace {
 
+constexpr double kMostTurn =
+    4.0;  // [rad] of a free body in a sub-step, beyond what bounds the step before it is pushed
 constexpr double kDisplaced = 0.02;  // [dx] by which a wall has kept a particle from where it was to go
 constexpr double kCellSlack = 1.05;  // cells are larger than the support, for motion inside a solve
 
@@ -44,6 +47,12 @@ double ParticleFluid::particleMass() const { return def_.density * def_.spacing 
 double ParticleFluid::pressureUnit(double dt) const { return dt * dt / (unit_ * unit_); }
 
 StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
+  StepBound bound = flowBound(pool, maxSpeed, gravity);
+  tightenByViscosity(pool, bound);
+  return bound;
+}
+
+StepBound ParticleFluid::flowBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound;
   const double support = supportRadius();
   if (maxSpeed > 0.0) bound.tighten(settings_.courant * support / maxSpeed, StepLimit::Courant);
@@ -59,7 +68,6 @@ StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, do
   const double stiffness = std::max(std::min(2.0 * pressure.typical, pressure.largest) / settings_.typicalStiffness,
                                     pressure.largest / settings_.largestStiffness);
   if (stiffness > 0.0) bound.tighten(def_.spacing / std::sqrt(stiffness), StepLimit::Pressure);
-  tightenByViscosity(pool, bound);
   return bound;
 }
 
@@ -102,15 +110,28 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
     bodies_.settle(nullptr);
     return;
   }
+  if (overTurned(context, stats)) return;
   resizeScratch(pool.size());
   largestPressure_ = pressureScale(pool).largest;
   predict(context, pool, impulses, stats);
   sortByCell(context, pool);
   meetWalls(context);
   solvePressure(context, pool, stats);
+  if (overTurned(context, stats)) return;
   finishPositions(context, pool, impulses, stats);
   applyViscosity(context, pool, impulses);
   bookCarried(context, pool, impulses);
+}
+
+// Round a body that turns a million times in a sub-step, paths would be followed for hours.
+bool ParticleFluid::overTurned(const StepContext& context, StepStats& stats) {
+  const int owner = context.freeBodies != nullptr ? context.freeBodies->overTurned(kMostTurn) : -1;
+  if (owner < 0) return false;
+  stats.trouble = Trouble::Turn;
+  stats.troubleValue = context.freeBodies->turn(owner);
+  stats.troubleLimit = kMostTurn;
+  stats.troubleAt = context.freeBodies->center(owner);
+  return true;
 }
 
 void ParticleFluid::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {

@@ -60,6 +60,8 @@ class ParticleFluid : public FluidModel {
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
+  /// What binds the sub-step but viscosity; speed [m/s] and acceleration [m/s²] are the largest.
+  StepBound flowBound(const ParticlePool& pool, double maxSpeed, double acceleration) const;
 
   static constexpr float kNever = 1e6f;           // density at which a film bears
   static constexpr std::size_t kCellBlock = 128;  // cells a task, about 500 particles
@@ -90,6 +92,7 @@ class ParticleFluid : public FluidModel {
   std::vector<std::uint32_t> occupied_;
 
  private:
+  static bool overTurned(const StepContext& context, StepStats& stats);
   void predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);

@@ -51,8 +51,10 @@ RunRecord recordOf(const Scene& scene, const World& world, const std::string& co
 // What to change, by what bound the step that failed.
 std::string advice(const World& world, const StepReport& report) {
   if (world.definition().timeStep) {
-    return fmt::format("`model.time_step` is {} s: shorten it, or leave it out for adaptive steps",
-                       *world.definition().timeStep);
+    return fmt::format(
+        "`model.time_step` is {} s: leave it out for adaptive steps, or come nearer to theirs: too long or far too "
+        "short, it is unstable",
+        *world.definition().timeStep);
   }
   switch (report.trouble) {
     case Trouble::NonFinite:
@@ -60,6 +62,9 @@ std::string advice(const World& world, const StepReport& report) {
     case Trouble::Compression:
       return "look for fluid that is pressed together there: overlapping blocks, a body that moves into the fluid, a "
              "gap narrower than a few spacings; a smaller `model.spacing` resolves it";
+    case Trouble::Turn:
+      return "a free body there is spun up within one step: it is thin or light against the fluid's particles; make it "
+             "heavier or thicker, or `model.spacing` smaller";
     default:
       return "look for what is fastest there: a block's or an emitter's velocity, a body; a smaller "
              "`model.spacing` makes the adaptive steps shorter";
@@ -70,9 +75,11 @@ void tellInstability(const World& world, const StepReport& report, const std::st
   fmt::print(stderr,
              "{}the simulation went unstable at t = {:.6g} s and was stopped: {} {:.3g} where {:.3g} is the limit",
              label("error"), world.time(), name(report.trouble), report.troubleValue, report.troubleLimit);
-  fmt::print(stderr, ", at ({:.4g}, {:.4g}); the step was set by {}", report.troubleAt.x(), report.troubleAt.y(),
-             name(report.limit));
-  if (report.rejected > 0) fmt::print(stderr, " and {} shorter ones were tried", report.rejected);
+  if (report.troubleAt.allFinite()) {
+    fmt::print(stderr, ", at ({:.4g}, {:.4g})", report.troubleAt.x(), report.troubleAt.y());
+  }
+  fmt::print(stderr, "; the step was set by {}", name(report.limit));
+  if (report.rejected > 1) fmt::print(stderr, " and {} shorter ones were tried", report.rejected - 1);
   fmt::print(stderr, ".\n{}.\nThe last sound state is in {}/checkpoint.h5.\n", advice(world, report), folder);
 }
 

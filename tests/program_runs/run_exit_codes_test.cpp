@@ -119,6 +119,7 @@ TEST_F(ExitCodes, a_time_step_that_is_far_too_long_ends_with_3_and_keeps_the_las
   const Outcome outcome = froude({"run", "s.toml", "--until", "30"});
   EXPECT_EQ(outcome.code, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("model.time_step"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("the step was set by literal.\n"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("checkpoint.h5"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.lastLine(), "out/s");
   EXPECT_EQ(summary("out/s")["status"], "unstable");

@@ -73,6 +73,55 @@ TEST_P(FluidInMotion, a_start_with_half_too_many_particles_is_refused) {
   EXPECT_EQ(world.time(), 0.0);
 }
 
+TEST_P(FluidInMotion, a_start_with_gaps_falls_together_under_gravity_and_loses_none) {
+  World world(fluidWorld({{0.0, 0.0}, {0.6, 1.0}}, 0.02));
+  fill(world, {{0.0, 0.0}, {0.6, 0.48}}, 0.024);  // 0.69 of a full block
+  const std::size_t count = world.fluid()->size();
+  runTo(world, 2.0);
+  EXPECT_EQ(world.fluid()->size(), count);
+  EXPECT_LT(world.ledger().maxDensityError, 0.1);
+  EXPECT_LT(meanSpeed(world), 0.05 * std::sqrt(kG * 0.33));
+  double height = 0.0;
+  for (const double y : world.fluid()->y()) height += y / static_cast<double>(count);
+  const double full = 0.5 * static_cast<double>(count) * 0.02 * 0.02 / 0.6;
+  EXPECT_NEAR(height, full, 0.05 * full) << "half the depth of as many particles without gaps";
+}
+
+TEST_P(FluidInMotion, steps_a_hundredth_of_its_own_do_not_heat_a_fluid) {
+  WorldDef def = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.025);
+  def.timeStep = 1e-5;
+  World world(def);
+  fill(world, {{0.0, 0.0}, {0.5, 0.5}}, 0.025);
+  runTo(world, 0.012);
+  EXPECT_LT(world.ledger().energyDrift, 0.01);
+  EXPECT_LT(meanSpeed(world), kG * 0.012) << "of free fall";
+}
+
+// Lighter than a particle, it is thrown about by any of them; following paths around a million turns would take hours.
+TEST_P(FluidInMotion, a_needle_lighter_than_a_particle_may_spin_out_of_bounds_but_not_for_ever) {
+  WorldDef def = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.02);
+  BodyDef needle = body("needle", Polygon::make({{0.0, 0.0}, {0.3, 0.001}, {0.0, 0.002}}), {0.3, 0.3});
+  needle.angle = 0.5;
+  needle.motion = Motion::Free;
+  needle.density = 500.0;
+  def.bodies.push_back(needle);
+  World world(def);
+  fill(world, {{0.0, 0.0}, {1.0, 0.28}}, 0.02);
+  StepReport report;
+  while (report.ok() && world.time() < 0.1) report = world.substep();
+  EXPECT_TRUE(report.ok() || world.time() > 0.0);
+  EXPECT_TRUE(world.totals().momentum.allFinite());
+
+  def.bodies[0].spin = 1e12;
+  def.timeStep = 1e-3;
+  World spun(def);
+  fill(spun, {{0.0, 0.0}, {1.0, 0.28}}, 0.02);
+  report = spun.substep();
+  EXPECT_EQ(report.trouble, Trouble::Turn);
+  EXPECT_GT(report.troubleValue, 1e3);
+  EXPECT_EQ(report.limit, StepLimit::Literal);
+}
+
 TEST_P(FluidInMotion, single_particles_and_no_particles_are_no_trouble) {
   WorldDef def = fluidWorld({{0.0, 0.0}, {1.0, 1.0}}, 0.02);
   World empty(def);

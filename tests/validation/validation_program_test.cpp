@@ -87,8 +87,19 @@ TEST(ValidationProgram, wrong_words_are_refused) {
   EXPECT_EQ(run("--threads 0"), 2);
   EXPECT_EQ(run("--limit soon"), 2);
   EXPECT_EQ(run("--rows"), 2);
+  EXPECT_EQ(run("--cases ,"), 2);
   EXPECT_EQ(run("--list"), 0);
+  EXPECT_EQ(run("--help"), 0);
   EXPECT_EQ(run("--quick --methods pbf --cases drop --rows /nowhere/at/all.csv"), 4);
+}
+
+TEST(ValidationProgram, rows_are_not_appended_to_a_file_of_something_else) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "froude_validation_notes.txt";
+  std::ofstream(file) << "my notes\n";
+  EXPECT_EQ(run("--quick --methods pbf --cases drop --rows \"" + file.string() + "\""), 2);
+  std::ifstream stream(file);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "my notes\n");
+  std::filesystem::remove(file);
 }
 
 class Nothing final : public Measure {
