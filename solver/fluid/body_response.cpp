@@ -58,10 +58,10 @@ void BodyResponse::holdBack(const float* diagonal) {
   }
 }
 
-void BodyResponse::sumImpulses(const float* kappa) {
+void BodyResponse::sumImpulses(const float* kappa, double share) {
   sums_.assign(moving_.size(), {0.0, 0.0, 0.0});
   for (const Link& l : links_) {
-    const double twice = 2.0 * static_cast<double>(kappa[l.particle]);
+    const double twice = 2.0 * share * static_cast<double>(kappa[l.particle]);
     Wrench& sum = sums_[l.body];
     sum[0] += twice * l.x, sum[1] += twice * l.y, sum[2] += twice * l.moment;
   }
@@ -89,9 +89,9 @@ void BodyResponse::step(Body& body, const Wrench& impulse) {
   for (int i = 0; i < 3; ++i) body.moved[static_cast<std::size_t>(i)] += change[i];
 }
 
-void BodyResponse::follow(const float* kappa) {
+void BodyResponse::follow(const float* kappa, double share) {
   if (!any()) return;
-  sumImpulses(kappa);
+  sumImpulses(kappa, share);
   for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b]);
   for (const Link& l : links_) answered_[l.particle] = field_[l.particle];
   for (const Link& l : links_) {
@@ -102,7 +102,7 @@ void BodyResponse::follow(const float* kappa) {
 
 void BodyResponse::settle(const float* kappa) {
   if (bodies_ == nullptr) return;
-  sumImpulses(kappa);
+  sumImpulses(kappa, 1.0);
   const double dx = units_.spacing, unit = units_.impulse;
   for (std::size_t b = 0; b < moving_.size(); ++b) {
     Body& body = moving_[b];

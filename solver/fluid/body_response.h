@@ -35,8 +35,8 @@ class BodyResponse {
   /// What the particles see of the walls while no body has moved by the pressures: their λ, or what these gain. Must
   /// stay where it is.
   void startFrom(std::span<const float> field);
-  /// One step towards where the pressures κ bring the bodies; writes the field as the fluid now sees it.
-  void follow(const float* kappa);
+  /// One step towards where the pressures κ, times `share`, bring the bodies; writes the field as the fluid now sees it.
+  void follow(const float* kappa, double share = 1.0);
   /// The field by particle.
   const float* answered() const { return any() ? answered_.data() : field_; }
   /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left. κ may be
@@ -59,7 +59,7 @@ class BodyResponse {
     bool touched = false;            // by any particle
   };
   void add(int owner);
-  void sumImpulses(const float* kappa);
+  void sumImpulses(const float* kappa, double share);
   static void step(Body& body, const Wrench& impulse);
 
   FreeBodies* bodies_ = nullptr;

@@ -17,10 +17,7 @@ constexpr int kDensitySweeps = 5;
 constexpr float kStep = 0.8f, kMomentum = 0.4f;  // of a sweep; the spectral radius is 2.5 (walls included)
 constexpr float kShare = 0.5f;                   // of a density error that such a sweep takes away
 constexpr float kReturn = 3e-4f;                 // share of a density error that the velocities take back in a sub-step
-constexpr float kFull = 0.97f;                   // density from which a kernel counts as full
-constexpr float kSkew = 0.3f;                    // |S + g| from which it does not
 constexpr float kEven = 0.2f;                    // share of S by which a particle gives way to an uneven neighbourhood
-constexpr double kOpen = 2.0;                    // times √N particles at a surface make a free surface
 constexpr float kNoFloor = -1e30f;
 
 }  // namespace
@@ -32,8 +29,10 @@ void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
   // What the constants below take a sub-step is meant for one that the flow asks for.
   const StepBound own = flowBound(pool, context.maxSpeed, context.acceleration);
   pace_ = std::min(1.0, context.dt / std::min(own.dt, kFreeStep));
-  findArrangement(context, pool);
-  findWallGain(context);
+  for (AlignedArray<float>* a : {&totalX_, &totalY_, &least_}) a->resize(pool.size());
+  tense_.resize(pool.size());
+  findArrangement(context, pool.column(density_).data(), diagonal_.data());
+  findWallGain(context, context.dt);
   prepareSystem(pool);
   warmStart(context, pool);
   solveDivergence(context, pool, stats);
@@ -41,95 +40,38 @@ void Dfsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
   judgeDensity(context, pool, stats);
 }
 
-void Dfsph::findArrangement(const StepContext& context, ParticlePool& pool) {
-  const std::size_t n = pool.size();
-  for (AlignedArray<float>* a :
-       {&momentXX_, &momentXY_, &momentYY_, &skewX_, &skewY_, &totalX_, &totalY_, &least_, &wallGain_}) {
-    a->resize(n);
-  }
-  place_.resize(n);
-  tense_.resize(n);
-  const auto density = pool.column(density_);
-  const MomentLoop loop{walls_.any() ? walls_.lambda() : nullptr,
-                        density.data(),
-                        skewX_.data(),
-                        skewY_.data(),
-                        diagonal_.data(),
-                        {momentXX_.data(), momentXY_.data(), momentYY_.data()}};
-  const PairFrame pairs = frame();
-  const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.moments(pairs, loop, begin, end); });
-  const float *lambda = walls_.lambda(), *wallX = walls_.gradientX(), *wallY = walls_.gradientY();
-  const bool walls = walls_.any();
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float x = skewX_[i] + (walls ? wallX[i] : 0.0f), y = skewY_[i] + (walls ? wallY[i] : 0.0f);
-      const bool full = density[i] > kFull && x * x + y * y < kSkew * kSkew;
-      place_[i] = !full                       ? GradientCorrection::Place::AtSurface
-                  : walls && lambda[i] > 0.0f ? GradientCorrection::Place::AtWall
-                                              : GradientCorrection::Place::Inside;
-    }
-  });
-  correction_.build(grid_, occupied_, {momentXX_.data(), momentXY_.data(), momentYY_.data()}, place_.data());
-}
-
-// λ grows where a wall comes nearer: the same as if the particle went the other way.
-void Dfsph::findWallGain(const StepContext& context) {
-  std::fill(wallGain_.begin(), wallGain_.end(), 0.0f);
-  const double scale = context.dt / unit_;
-  walls_.forEachLink([&](const WallLink& link) {
-    if (link.owner < 0) return;
-    const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
-    const Vec2 way = scale * context.obstacles.velocityAt(link.owner, at);
-    const Vec2 gradient(static_cast<double>(link.gradientX), static_cast<double>(link.gradientY));
-    wallGain_[link.particle] -= static_cast<float>(way.dot(gradient));
-  });
-}
-
-// Only a free surface gives pressures their zero, and so tension a meaning.
-bool Dfsph::hasSurface() const {
-  const auto count = parallelSum(grid_.size(), [&](std::size_t begin, std::size_t end) {
-    double part = 0.0;
-    for (std::size_t i = begin; i < end; ++i) part += place_[i] == GradientCorrection::Place::AtSurface ? 1.0 : 0.0;
-    return part;
-  });
-  return count > kOpen * std::sqrt(static_cast<double>(grid_.size()));
-}
-
 // What the pressures are to reach, what they may be, and the diagonal of their system:
 // (BS + g)·(BS + 2g) + Σ|B∇W|², the last for a neighbourhood that is the same all round.
 void Dfsph::prepareSystem(const ParticlePool& pool) {
   const auto pressure = pool.column(pressure_), density = pool.column(density_);
-  const Matrices<const float> b = correction_.matrices();
-  const bool walls = walls_.any(), open = hasSurface();
+  const Matrices<const float> b = arrangement_.correction();
+  const bool walls = walls_.any(), open = arrangement_.hasSurface();
   const float back = kReturn * static_cast<float>(pace_);
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const bool surface = place_[i] == GradientCorrection::Place::AtSurface;
-      const bool inside = place_[i] == GradientCorrection::Place::Inside;
+      const bool surface = arrangement_.atSurface(i), inside = arrangement_.inside(i);
       // Nothing hangs on a wall either: drawn into it, particles of a full closed tank burst.
       least_[i] = inside ? kNoFloor : 0.0f;
       // Inside, a fraction of what is too dense goes back, less than the sweeps of a sub-step take off the smoothest
       // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
       target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -back * std::max(0.0f, density[i] - 1.0f);
       const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
-      const float x = b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i], y = b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i];
+      const float x = b.xx[i] * arrangement_.skewX[i] + b.xy[i] * arrangement_.skewY[i], y = b.xy[i] * arrangement_.skewX[i] + b.yy[i] * arrangement_.skewY[i];
       const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
       diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
       tense_[i] = open && inside && pressure[i] < 0.0f;
       if (tense_[i] == 0) continue;
       // Of κᵢ + κⱼ the own pressure changes its sign.
       diagonal_[i] -= 2.0f * (x * x + y * y);
-      skewX_[i] = -skewX_[i];
-      skewY_[i] = -skewY_[i];
+      arrangement_.skewX[i] = -arrangement_.skewX[i];
+      arrangement_.skewY[i] = -arrangement_.skewY[i];
     }
   });
   for (const Carried& c : carried_) {  // goes its own way, whatever others give back
     if (tense_[c.particle] == 0) continue;
     tense_[c.particle] = 0;
-    skewX_[c.particle] = -skewX_[c.particle];
-    skewY_[c.particle] = -skewY_[c.particle];
+    arrangement_.skewX[c.particle] = -arrangement_.skewX[c.particle];
+    arrangement_.skewY[c.particle] = -arrangement_.skewY[c.particle];
   }
   // What is squeezed between a body and another solid bears nothing: the gap is narrower than a particle.
   walls_.forEachFilm([&](std::uint32_t i) {
@@ -155,18 +97,18 @@ void Dfsph::warmStart(const StepContext& context, const ParticlePool& pool) {
 
 // Displacement by κ; `kappa`, where it is not null, takes it too.
 void Dfsph::push(const StepContext& context, const float* pressure, float* kappa) {
-  const Matrices<const float> b = correction_.matrices();
+  const Matrices<const float> b = arrangement_.correction();
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      momentXX_[i] = pressure[i] * b.xx[i];
-      momentXY_[i] = pressure[i] * b.xy[i];
-      momentYY_[i] = pressure[i] * b.yy[i];
+      arrangement_.xx[i] = pressure[i] * b.xx[i];
+      arrangement_.xy[i] = pressure[i] * b.xy[i];
+      arrangement_.yy[i] = pressure[i] * b.yy[i];
     }
   });
   const PushLoop loop{pressure,
-                      {momentXX_.data(), momentXY_.data(), momentYY_.data()},
-                      skewX_.data(),
-                      skewY_.data(),
+                      {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()},
+                      arrangement_.skewX.data(),
+                      arrangement_.skewY.data(),
                       walls_.any() ? walls_.gradientX() : nullptr,
                       walls_.gradientY(),
                       walls_.tangent(),
@@ -201,7 +143,7 @@ double Dfsph::runDivergence(const StepContext& context) {
                               free ? 0.0f : kMomentum};
   const DivergenceLoop loop{totalX_.data(),
                             totalY_.data(),
-                            correction_.matrices(),
+                            arrangement_.correction(),
                             walls_.any() ? walls_.gradientX() : nullptr,
                             walls_.gradientY(),
                             bodies_.answered(),
@@ -238,7 +180,7 @@ void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, Step
 
 // What particles in tension took for themselves comes back to all of them alike.
 void Dfsph::giveBack() {
-  const Matrices<const float> b = correction_.matrices();
+  const Matrices<const float> b = arrangement_.correction();
   struct Part {
     double x, y, count;
   };
@@ -249,8 +191,8 @@ void Dfsph::giveBack() {
         for (std::size_t i = begin; i < end; ++i) {
           if (tense_[i] == 0) continue;
           const float twice = 2.0f * kappa_[i];
-          part.x -= static_cast<double>(twice * (b.xx[i] * skewX_[i] + b.xy[i] * skewY_[i]));
-          part.y -= static_cast<double>(twice * (b.xy[i] * skewX_[i] + b.yy[i] * skewY_[i]));
+          part.x -= static_cast<double>(twice * (b.xx[i] * arrangement_.skewX[i] + b.xy[i] * arrangement_.skewY[i]));
+          part.y -= static_cast<double>(twice * (b.xy[i] * arrangement_.skewX[i] + b.yy[i] * arrangement_.skewY[i]));
           part.count += 1.0;
         }
         return part;
@@ -276,10 +218,10 @@ void Dfsph::evenOut() {
     for (std::size_t i = begin; i < end; ++i) {
       solvedX_[i] = shiftX_[i];
       solvedY_[i] = shiftY_[i];
-      if (correction_.deep(i) || tense_[i] != 0) {
+      if (arrangement_.deep(i) || tense_[i] != 0) {
         const float even = tense_[i] != 0 ? -kEven : kEven;
-        shiftX_[i] -= even * skewX_[i];
-        shiftY_[i] -= even * skewY_[i];
+        shiftX_[i] -= even * arrangement_.skewX[i];
+        shiftY_[i] -= even * arrangement_.skewY[i];
       }
       latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(shiftX_[i] * kUnits)));
       latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(shiftY_[i] * kUnits)));
@@ -303,8 +245,7 @@ void Dfsph::solveDensity(const StepContext& context, ParticlePool& pool) {
 }
 
 std::size_t Dfsph::memoryBytes() const {
-  return ParticleFluid::memoryBytes() + correction_.memoryBytes() + 9 * totalX_.capacity() * sizeof(float) +
-         place_.capacity() + tense_.capacity();
+  return ParticleFluid::memoryBytes() + 3 * totalX_.capacity() * sizeof(float) + tense_.capacity();
 }
 
 }  // namespace froude

@@ -7,7 +7,6 @@
 // (2012)).
 #pragma once
 
-#include <froude/solver/fluid/gradient_correction.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
 namespace froude {
@@ -19,9 +18,6 @@ class Dfsph final : public ParticleFluid {
 
  private:
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
-  void findArrangement(const StepContext& context, ParticlePool& pool);
-  void findWallGain(const StepContext& context);
-  bool hasSurface() const;
   void prepareSystem(const ParticlePool& pool);
   void warmStart(const StepContext& context, const ParticlePool& pool);
   void solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats);
@@ -32,14 +28,9 @@ class Dfsph final : public ParticleFluid {
   void evenOut();
 
   double pace_ = 1.0;  // of the sub-step: its length over the one that the flow asks for, at most 1
-  GradientCorrection correction_;
-  AlignedArray<GradientCorrection::Place> place_;
-  AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the solve
-  AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W; −S of particles in tension
   AlignedArray<std::uint8_t> tense_;                    // 1 where differences of pressure are felt, not sums
   AlignedArray<float> totalX_, totalY_;                 // displacement in the sub-step
   AlignedArray<float> least_;                           // lowest κ: none inside, else 0
-  AlignedArray<float> wallGain_;                        // what the walls' own motion adds to λ
 };
 
 }  // namespace froude

@@ -10,7 +10,7 @@
 namespace froude {
 
 /// Reach of a particle of that model [m].
-double supportOf(const FluidDef& def);
+FROUDE_API double supportOf(const FluidDef& def);
 
 /// A bound on the sub-step and its name.
 struct StepBound {

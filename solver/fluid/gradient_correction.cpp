@@ -5,7 +5,6 @@
 namespace froude {
 namespace {
 
-constexpr float kUsual = 1.05f;       // B where M is not used: the inverse of its mean over a fluid at rest
 constexpr float kLeastMoment = 0.5f;  // determinant; below, the mean is of too few
 constexpr std::int32_t kReach = 2;    // cells on each side over which M is averaged
 constexpr std::size_t kBlock = 128;   // cells a task
@@ -37,7 +36,7 @@ GradientCorrection::Sum GradientCorrection::around(const GridFrame& frame, std::
 }
 
 void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32_t> occupied,
-                               const Matrices<const float>& moment, const Place* place) {
+                               const Matrices<const float>& moment, const Place* place, float usual) {
   const std::size_t n = grid.size();
   for (AlignedArray<float>* a : {&xx_, &xy_, &yy_}) a->resize(n);
   deep_.resize(n);
@@ -68,9 +67,9 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
       const bool usable = det > kLeastMoment;
       for (std::uint32_t i = start[occupied[k]]; i < start[occupied[k] + 1]; ++i) {
         const bool inside = usable && place[i] == Place::Inside;
-        xx_[i] = inside ? yy / det : kUsual;
+        xx_[i] = inside ? yy / det : usual;
         xy_[i] = inside ? -xy / det : 0.0f;
-        yy_[i] = inside ? xx / det : kUsual;
+        yy_[i] = inside ? xx / det : usual;
         deep_[i] = inside && sum.surface == 0.0f;
       }
     }

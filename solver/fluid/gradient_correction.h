@@ -25,7 +25,9 @@ class GradientCorrection {
 
   /// Particles sorted by `grid`; moments M as the pair loops give them, place by particle. Cost: O(particles + cells).
   void build(const CellGrid& grid, std::span<const std::uint32_t> occupied, const Matrices<const float>& moment,
-             const Place* place);
+             const Place* place, float usual = kUsual);
+  /// B where M is not used: the inverse of its mean over a fluid at rest, where the unit is the spacing.
+  static constexpr float kUsual = 1.05f;
 
   /// B by particle: the inverse of the mean M inside, a multiple of the unit matrix elsewhere.
   Matrices<const float> matrices() const { return {xx_.data(), xy_.data(), yy_.data()}; }

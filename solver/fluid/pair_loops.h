@@ -103,9 +103,10 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
-/// What displacements u make of densities in an acoustic step, with diffusion: next = ρ' + Σ (uᵢ − uⱼ)·Bᵢ∇W + u·g + λ' +
-/// diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ)), ρ' = ρ/ρ0 − 1 and G its gradient, taken from the acceleration
-/// by pressures: G = slope·a. The second term is zero where ρ' is linear (Antuono et al. 2010, eq. 9).
+/// What displacements u make of densities in an acoustic step, with diffusion: next = ρ' + share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') +
+/// diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ))), ρ' = ρ/ρ0 − 1 and G its gradient, taken from the acceleration
+/// by pressures: G = slope·a. The last term is zero where ρ' is linear (Antuono et al. 2010, eq. 9). Behind a
+/// wall the fluid is its mirror image, as in `force`, whose adjoint this is: no pressure can feed itself.
 struct RateLoop {
   const float* ux = nullptr;  // [dx]
   const float* uy = nullptr;
@@ -117,7 +118,9 @@ struct RateLoop {
   float diffusion = 0.0f;
   const float* wallX = nullptr;  // null: no walls near any particle
   const float* wallY = nullptr;
-  const float* wallGain = nullptr;
+  const float* wallGain = nullptr;  // λ' of the sub-step
+  float wallShare = 1.0f;           // of it in this step
+  const float* share = nullptr;     // by particle, of all these gains
   float* next = nullptr;
 };
 
@@ -162,6 +165,20 @@ struct PushLoop {
   float* kappa = nullptr;  // where not null, `pressure` is added to it
 };
 
+/// Displacement by a pressure at present coordinates: shift = −Σ (κᵢBᵢ + κⱼBⱼ)∇W − 2κᵢ g, also added to u.
+struct ForceLoop {
+  const float* pressure = nullptr;  // κ
+  Matrices<const float> scaled;     // κB, times the particles' volume
+  const float* wallX = nullptr;     // null: no walls
+  const float* wallY = nullptr;
+  const float* tangent = nullptr;
+  float* shiftX = nullptr;
+  float* shiftY = nullptr;
+  float* ux = nullptr;  // in and out
+  float* uy = nullptr;
+  float* kappa = nullptr;  // where not null, `pressure` is added to it
+};
+
 /// Fills `runs`, one for each of `cells`. Reuses the memory.
 void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, const HiddenPairs& hidden,
                   AlignedArray<CellRuns>& runs);
@@ -176,6 +193,7 @@ struct PairLoops {
   void (*push)(const PairFrame&, const PushLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
+  void (*force)(const PairFrame&, const ForceLoop&, std::size_t begin, std::size_t end);
   void (*rate)(const PairFrame&, const RateLoop&, std::size_t begin, std::size_t end);
 };
 

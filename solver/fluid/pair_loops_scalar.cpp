@@ -130,7 +130,7 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
   });
 }
 
-// Adds what a wall does to a move, and gives it to the particle.
+// Adds what a wall does to a move, and the pressure to those before it.
 template <typename Loop>
 void takeMove(const Loop& loop, std::uint32_t i, float& moveX, float& moveY) {
   const float own = loop.pressure[i];
@@ -140,8 +140,6 @@ void takeMove(const Loop& loop, std::uint32_t i, float& moveX, float& moveY) {
     moveX -= 2.0f * own * gx + along * gy;
     moveY -= 2.0f * own * gy - along * gx;
   }
-  loop.shiftX[i] += moveX;
-  loop.shiftY[i] += moveY;
   if (loop.kappa != nullptr) loop.kappa[i] += own;
 }
 
@@ -158,6 +156,8 @@ void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::
     float moveX = 2.0f * kNorm * sx - (loop.scaled.xx[i] * qx + loop.scaled.xy[i] * qy);
     float moveY = 2.0f * kNorm * sy - (loop.scaled.xy[i] * qx + loop.scaled.yy[i] * qy);
     takeMove(loop, i, moveX, moveY);
+    loop.shiftX[i] += moveX;
+    loop.shiftY[i] += moveY;
     loop.totalX[i] += moveX;
     loop.totalY[i] += moveY;
   });
@@ -175,6 +175,8 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
     });
     float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
     takeMove(loop, i, moveX, moveY);
+    loop.shiftX[i] += moveX;
+    loop.shiftY[i] += moveY;
     loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(moveX / kUnit)));
     loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(moveY / kUnit)));
   });
@@ -196,6 +198,26 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
   });
 }
 
+void force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
+  forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
+    float sx = 0.0f, sy = 0.0f;
+    const float ownXX = loop.scaled.xx[i], ownXY = loop.scaled.xy[i], ownYY = loop.scaled.yy[i];
+    forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
+      const float m3 = m * m * m;
+      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
+      const float xx = ownXX + loop.scaled.xx[j], xy = ownXY + loop.scaled.xy[j], yy = ownYY + loop.scaled.yy[j];
+      sx += f * (xx * dx + xy * dy);
+      sy += f * (xy * dx + yy * dy);
+    });
+    float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
+    takeMove(loop, i, moveX, moveY);
+    loop.shiftX[i] = moveX;
+    loop.shiftY[i] = moveY;
+    loop.ux[i] += moveX;
+    loop.uy[i] += moveY;
+  });
+}
+
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sum = 0.0f;
@@ -209,8 +231,10 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
       sum += m3 * (1.0f + 2.5f * kTail * (m3 * m3)) * (away - loop.diffusion * jump);
     });
     float gain = -2.0f * kNorm * sum;
-    if (loop.wallX != nullptr) gain += loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallGain[i];
-    loop.next[i] = excess + gain;
+    if (loop.wallX != nullptr) {
+      gain += 2.0f * (loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallShare * loop.wallGain[i]);
+    }
+    loop.next[i] = excess + loop.share[i] * gain;
   });
 }
 
@@ -243,7 +267,7 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
 }
 
 const PairLoops& scalarPairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, rate};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, force, rate};
   return kLoops;
 }
 

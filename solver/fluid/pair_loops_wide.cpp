@@ -161,7 +161,7 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
       });
 }
 
-// Adds what a wall does to a move, and gives it to the particles.
+// Adds what a wall does to a move, and the pressure to those before it.
 template <typename Loop>
 HWY_INLINE void takeMove(const Loop& loop, std::uint32_t i, std::uint32_t count, VF& moveX, VF& moveY) {
   const VF own = loadSome(loop.pressure + i, count);
@@ -173,8 +173,6 @@ HWY_INLINE void takeMove(const Loop& loop, std::uint32_t i, std::uint32_t count,
     moveX = hn::Sub(moveX, hn::MulAdd(twice, gx, hn::Mul(along, gy)));
     moveY = hn::Sub(moveY, hn::Sub(hn::Mul(twice, gy), hn::Mul(along, gx)));
   }
-  storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
-  storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
   if (loop.kappa != nullptr) storeSome(hn::Add(loadSome(loop.kappa + i, count), own), loop.kappa + i, count);
 }
 
@@ -196,6 +194,8 @@ void push(const PairFrame& frame, const PushLoop& loop, std::size_t begin, std::
         VF moveX = hn::NegMulAdd(xx, qx, hn::NegMulAdd(xy, qy, hn::Mul(scale, sums[0])));
         VF moveY = hn::NegMulAdd(xy, qx, hn::NegMulAdd(yy, qy, hn::Mul(scale, sums[1])));
         takeMove(loop, i, count, moveX, moveY);
+        storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
+        storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
         storeSome(hn::Add(loadSome(loop.totalX + i, count), moveX), loop.totalX + i, count);
         storeSome(hn::Add(loadSome(loop.totalY + i, count), moveY), loop.totalY + i, count);
       });
@@ -214,6 +214,8 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
         VF moveX = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[0]), moveY = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[1]);
         takeMove(loop, i, count, moveX, moveY);
+        storeSome(hn::Add(loadSome(loop.shiftX + i, count), moveX), loop.shiftX + i, count);
+        storeSome(hn::Add(loadSome(loop.shiftY + i, count), moveY), loop.shiftY + i, count);
         storeMoved(frame.x + i, moveX, loop.newX + i, count);
         storeMoved(frame.y + i, moveY, loop.newY + i, count);
       });
@@ -237,6 +239,28 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
       });
 }
 
+void force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
+  const F f;
+  const float* const values[3] = {loop.scaled.xx, loop.scaled.xy, loop.scaled.yy};
+  sweepCells<2, 3>(
+      frame, begin, end, values,
+      [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
+        const VF slope = slopeOf(hn::Mul(m, hn::Mul(m, m)));
+        const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
+        const VF xy = hn::Add(own[1], other[1]);
+        sums[0] = hn::MulAdd(hn::Add(own[0], other[0]), px, hn::MulAdd(xy, py, sums[0]));
+        sums[1] = hn::MulAdd(xy, px, hn::MulAdd(hn::Add(own[2], other[2]), py, sums[1]));
+      },
+      [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
+        VF moveX = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[0]), moveY = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[1]);
+        takeMove(loop, i, count, moveX, moveY);
+        storeSome(moveX, loop.shiftX + i, count);
+        storeSome(moveY, loop.shiftY + i, count);
+        storeSome(hn::Add(loadSome(loop.ux + i, count), moveX), loop.ux + i, count);
+        storeSome(hn::Add(loadSome(loop.uy + i, count), moveY), loop.uy + i, count);
+      });
+}
+
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   const Matrices<const float>& b = loop.correction;
@@ -253,12 +277,14 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
         sums[0] = hn::MulAdd(slopeOf(hn::Mul(m, hn::Mul(m, m))), change, sums[0]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF next = hn::MulAdd(hn::Set(f, -4.0f * kNorm), sums[0], loadSome(loop.excess + i, count));
+        VF gain = hn::Mul(hn::Set(f, -4.0f * kNorm), sums[0]);
         if (loop.wallX != nullptr) {
-          next = hn::MulAdd(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count), next);
-          next = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), next);
-          next = hn::Add(next, loadSome(loop.wallGain + i, count));
+          VF wall = hn::Mul(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count));
+          wall = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), wall);
+          wall = hn::MulAdd(hn::Set(f, loop.wallShare), loadSome(loop.wallGain + i, count), wall);
+          gain = hn::MulAdd(hn::Set(f, 2.0f), wall, gain);
         }
+        const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, loadSome(loop.excess + i, count));
         storeSome(next, loop.next + i, count);
       });
 }
@@ -266,7 +292,7 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
 }  // namespace
 
 const PairLoops& widePairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, rate};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, force, rate};
   return kLoops;
 }
 

@@ -268,6 +268,29 @@ void ParticleFluid::runDisplacement(const StepContext& context, const float* pre
   holdCarried(asVelocity);
 }
 
+void ParticleFluid::findArrangement(const StepContext& context, float* density, float* squares) {
+  arrangement_.resize(grid_.size());
+  const MomentLoop loop = arrangement_.moments(walls_, density, squares);
+  const PairFrame pairs = frame();
+  const PairLoops& loops = pairLoops(context.simd);
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.moments(pairs, loop, begin, end); });
+  arrangement_.judge(grid_, occupied_, walls_, volume_, density);
+}
+
+// λ grows where a wall comes nearer: the same as if the particle went the other way.
+void ParticleFluid::findWallGain(const StepContext& context, double time) {
+  wallGain_.resize(grid_.size());
+  std::fill(wallGain_.begin(), wallGain_.end(), 0.0f);
+  walls_.forEachLink([&](const WallLink& link) {
+    if (link.owner < 0) return;
+    const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
+    const Vec2 way = time / unit_ * context.obstacles.velocityAt(link.owner, at);
+    const Vec2 gradient(static_cast<double>(link.gradientX), static_cast<double>(link.gradientY));
+    wallGain_[link.particle] -= static_cast<float>(way.dot(gradient));
+  });
+}
+
 // To `change_`, from the excess of density of each particle.
 void ParticleFluid::liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess) {
   const std::size_t n = pool.size();
@@ -458,7 +481,8 @@ void ParticleFluid::resizeScratch(std::size_t n) {
 
 std::size_t ParticleFluid::memoryBytes() const {
   return 2 * predictedX_.capacity() * sizeof(double) + 16 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
-         walls_.memoryBytes() + coarse_.memoryBytes();
+         walls_.memoryBytes() + coarse_.memoryBytes() + arrangement_.memoryBytes() +
+         wallGain_.capacity() * sizeof(float);
 }
 
 }  // namespace froude

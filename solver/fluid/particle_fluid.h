@@ -6,6 +6,7 @@
 #include <froude/base/parallel.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/contact_log.h>
+#include <froude/solver/fluid/arrangement.h>
 #include <froude/solver/fluid/body_drag.h>
 #include <froude/solver/fluid/body_response.h>
 #include <froude/solver/fluid/coarse_pressure.h>
@@ -57,6 +58,10 @@ class ParticleFluid : public FluidModel {
   void runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity = true);
   /// What a nozzle carries goes back to where it was predicted; what it was to move by is booked as velocity, or not.
   void holdCarried(bool asVelocity);
+  /// For methods that use it: fills `arrangement_`, and by particle the density Σ W + λ and Σ|∇W|².
+  void findArrangement(const StepContext& context, float* density, float* squares);
+  /// For methods that use it: fills `wallGain_` with what the walls' own motion adds to λ in a time.
+  void findWallGain(const StepContext& context, double time);
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
@@ -82,6 +87,8 @@ class ParticleFluid : public FluidModel {
   AlignedArray<double> predictedX_, predictedY_;  // [m]
   AlignedArray<std::int32_t> latticeX_, latticeY_, nextX_, nextY_;
   AlignedArray<float> shiftX_, shiftY_, solvedX_, solvedY_, kappa_, change_, target_, diagonal_;
+  Arrangement arrangement_;
+  AlignedArray<float> wallGain_;
   AlignedArray<float> velocityX_, velocityY_, smoothX_, smoothY_;  // [m/s]
   double largestPressure_ = 0.0;  // |p/ρ| at the start of a sub-step, at its end once it is judged [m²/s²]
   struct Carried {

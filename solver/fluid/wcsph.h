@@ -6,13 +6,12 @@
 // (2017). What differs and why: docs/decisions/solver-wcsph.md.
 #pragma once
 
-#include <froude/solver/fluid/gradient_correction.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
 namespace froude {
 
 /// A sub-step is one set of cells and walls for a number of acoustic steps, each symplectic: velocities by the
-/// pressures, densities by these velocities, positions.
+/// pressures, densities by these velocities, positions. The column "density" is what was integrated, not a sum.
 class Wcsph final : public ParticleFluid {
  public:
   Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
@@ -22,29 +21,27 @@ class Wcsph final : public ParticleFluid {
 
  private:
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
-  void findArrangement(const StepContext& context, ParticlePool& pool);
-  void findWallGain(const StepContext& context);
   double acousticStep(double speed) const;
   void chooseSoundSpeed(const StepContext& context, const ParticlePool& pool);
-  void start(const StepContext& context, ParticlePool& pool, int steps);
+  void start(const StepContext& context, const ParticlePool& pool, int steps);
+  void limitStiffness();
+  void findStartPressure(const StepContext& context);
   void takePressures();
-  void accelerate(const StepContext& context);
-  void compress(const StepContext& context);
+  void accelerate(const StepContext& context, float* ux, float* uy, float* kappa);
+  void kick(const StepContext& context, int steps);
+  void compress(const StepContext& context, const float* ux, const float* uy, double diffusion, double wallShare);
   void drift();
   void finish(const StepContext& context, ParticlePool& pool, int steps);
 
   double soundSpeed_ = 0.0;  // c [m/s]; 0 until the first sub-step
-  float stiffness_ = 0.0f;   // (c dt/dx)² of an acoustic step
-  float maxSpeed_ = 0.0f;    // [m/s] where kernels are full
-  GradientCorrection correction_;
-  AlignedArray<GradientCorrection::Place> place_;
-  AlignedArray<float> momentXX_, momentXY_, momentYY_;  // M; κB during the steps
-  AlignedArray<float> skewX_, skewY_;                   // S = Σ∇W
-  AlignedArray<float> wallGain_;                        // what the walls' own motion adds to λ in an acoustic step
-  AlignedArray<float> excess_, nextExcess_;             // ρ/ρ0 − 1
-  AlignedArray<float> moveX_, moveY_;                   // velocity, as displacement in an acoustic step
-  AlignedArray<float> wayX_, wayY_;                     // since the start of the sub-step
-  AlignedArray<float> fallX_, fallY_;                   // gravity's share of `move` in an acoustic step
+  double flowSpeed_ = 0.0;   // largest where kernels are full [m/s]
+  float stiffness_ = 0.0f;   // (c dt/unit)² of an acoustic step
+  float background_ = 0.0f;  // ρ' that makes the background pressure
+  AlignedArray<float> excess_, nextExcess_;   // ρ/ρ0 − 1
+  AlignedArray<float> moveX_, moveY_;         // velocity, as displacement in an acoustic step
+  AlignedArray<float> fallX_, fallY_;         // gravity's share of that in an acoustic step
+  AlignedArray<float> wayX_, wayY_;           // from where it was predicted
+  AlignedArray<float> share_;                 // of a gain of density
 };
 
 }  // namespace froude
