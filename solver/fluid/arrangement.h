@@ -28,6 +28,7 @@ class Arrangement {
   bool atSurface(std::size_t i) const { return place_[i] == Place::AtSurface; }
   bool inside(std::size_t i) const { return place_[i] == Place::Inside; }
   bool deep(std::size_t i) const { return correction_.deep(i); }
+  bool closed(std::size_t i) const { return correction_.closed(i); }
   /// Is there a free surface? Only that gives pressures their zero, and so tension a meaning.
   bool hasSurface() const;
   /// B by particle.

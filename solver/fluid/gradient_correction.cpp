@@ -7,6 +7,7 @@ namespace {
 
 constexpr float kLeastMoment = 0.5f;  // determinant; below, the mean is of too few
 constexpr std::int32_t kReach = 2;    // cells on each side over which M is averaged
+constexpr float kStray = 0.03f;       // share of particles at a surface that make none
 constexpr std::size_t kBlock = 128;   // cells a task
 
 }  // namespace
@@ -28,6 +29,7 @@ GradientCorrection::Sum GradientCorrection::around(const GridFrame& frame, std::
       sum.xy += other.xy;
       sum.yy += other.yy;
       sum.count += other.count;
+      sum.open += other.open;
       // An empty cell is a surface, or the other side of a wall.
       sum.surface += other.surface + (other.count == 0.0f ? 1.0f : 0.0f);
     }
@@ -40,6 +42,7 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
   const std::size_t n = grid.size();
   for (AlignedArray<float>* a : {&xx_, &xy_, &yy_}) a->resize(n);
   deep_.resize(n);
+  closed_.resize(n);
   cells_.resize(grid.frame().cellCount());
   std::fill(cells_.begin(), cells_.end(), Sum{});
   const std::span<const std::uint32_t> start = grid.cellStart();
@@ -49,6 +52,7 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
       for (std::uint32_t i = start[occupied[k]]; i < start[occupied[k] + 1]; ++i) {
         if (place[i] != Place::Inside) {
           sum.surface += 1.0f;
+          sum.open += place[i] == Place::AtSurface ? 1.0f : 0.0f;
           continue;
         }
         sum.xx += moment.xx[i];
@@ -71,13 +75,14 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
         xy_[i] = inside ? -xy / det : 0.0f;
         yy_[i] = inside ? xx / det : usual;
         deep_[i] = inside && sum.surface == 0.0f;
+        closed_[i] = place[i] != Place::AtSurface && sum.open <= kStray * (sum.count + sum.surface);
       }
     }
   });
 }
 
 std::size_t GradientCorrection::memoryBytes() const {
-  return cells_.capacity() * sizeof(Sum) + 3 * xx_.capacity() * sizeof(float) + deep_.capacity();
+  return cells_.capacity() * sizeof(Sum) + 3 * xx_.capacity() * sizeof(float) + deep_.capacity() + closed_.capacity();
 }
 
 }  // namespace froude

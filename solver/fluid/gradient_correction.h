@@ -33,6 +33,8 @@ class GradientCorrection {
   Matrices<const float> matrices() const { return {xx_.data(), xy_.data(), yy_.data()}; }
   /// Is the particle so far inside that neither a surface nor a wall is in the cells around it?
   bool deep(std::size_t i) const { return deep_[i] != 0; }
+  /// Is no free surface in the cells around it? A stray particle there is none.
+  bool closed(std::size_t i) const { return closed_[i] != 0; }
   std::size_t memoryBytes() const;
 
  private:
@@ -40,12 +42,13 @@ class GradientCorrection {
     float xx = 0.0f, xy = 0.0f, yy = 0.0f;
     float count = 0.0f;    // of particles inside
     float surface = 0.0f;  // of others
+    float open = 0.0f;     // of these at a free surface
   };
   Sum around(const GridFrame& frame, std::uint32_t cell) const;
 
   AlignedArray<Sum> cells_;
   AlignedArray<float> xx_, xy_, yy_;
-  AlignedArray<std::uint8_t> deep_;
+  AlignedArray<std::uint8_t> deep_, closed_;
 };
 
 }  // namespace froude

@@ -11,6 +11,11 @@
 
 namespace froude::kernel {
 
+/// Blend: the kernel above. WendlandC2: (7/4π)(1 − q/2)⁴(1 + 2q) (Wendland, Adv. Comput. Math. 4 (1995)), whose Fourier
+/// transform is positive everywhere: supports of more than 2 spacings need that, or particles pair up. Both reach to
+/// q = 2.
+enum class Kind { Blend, WendlandC2 };
+
 /// Support radius in spacings.
 inline constexpr double kSupport = 2.0;
 /// Sum over the lattices named above, for particles; walls are integrals and have none.
@@ -38,6 +43,15 @@ inline double gradientFactor(double q2) {
   const double m = 1.0 - 0.25 * q2;
   const double m3 = m * m * m;
   return m > 0.0 ? -2.0 * kNorm * m3 * (1.0 + 2.5 * kTail * m3 * m3) : 0.0;
+}
+
+/// Factor of Wendland's kernel, and of its gradient −5·kWendland·(1 − q/2)³ over q.
+inline constexpr double kWendland = 7.0 / (4.0 * kPi);
+
+/// Wendland's kernel at the distance q.
+inline double wendland(double q) {
+  const double k = 1.0 - 0.5 * q;
+  return k > 0.0 ? kWendland * k * k * k * k * (1.0 + 2.0 * q) : 0.0;
 }
 
 }  // namespace froude::kernel

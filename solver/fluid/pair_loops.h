@@ -4,12 +4,14 @@
 // without a gather. A sum is written by the one particle it belongs to, so that threads change no bit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
 #include <froude/base/aligned.h>
 #include <froude/base/simd.h>
 #include <froude/particles/cell_grid.h>
+#include <froude/solver/fluid/kernel.h>
 
 namespace froude {
 
@@ -44,6 +46,7 @@ struct PairFrame {
   const std::int32_t* y = nullptr;
   std::int32_t periodX = 0, periodY = 0;  // lattice units
   HiddenPairs hidden;
+  kernel::Kind kernel = kernel::Kind::Blend;  // of `moments` and `viscosity`
 };
 
 /// One Jacobi sweep in the wake of the densities: change = max(least − κ, relaxation·(density − target)/diagonal), the
@@ -103,7 +106,7 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
-/// What displacements u make of densities in an acoustic step, with diffusion: next = ρ' + share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') +
+/// With Wendland's kernel: what displacements u make of densities in an acoustic step, with diffusion: next = ρ' + share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') +
 /// diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ))), ρ' = ρ/ρ0 − 1 and G its gradient, taken from the acceleration
 /// by pressures: G = slope·a. The last term is zero where ρ' is linear (Antuono et al. 2010, eq. 9). Behind a
 /// wall the fluid is its mirror image, as in `force`, whose adjoint this is: no pressure can feed itself.
@@ -165,9 +168,11 @@ struct PushLoop {
   float* kappa = nullptr;  // where not null, `pressure` is added to it
 };
 
-/// Displacement by a pressure at present coordinates: shift = −Σ (κᵢBᵢ + κⱼBⱼ)∇W − 2κᵢ g, also added to u.
+/// With Wendland's kernel, as `rate`: displacement by a pressure at present coordinates: shift = −Σ (σᵢκᵢBᵢ + κⱼBⱼ)∇W − 2κᵢ g, also added to u. σ is 1, or −1
+/// for a particle that feels differences of pressure (Sun et al., Comput. Phys. Commun. 224 (2018)).
 struct ForceLoop {
   const float* pressure = nullptr;  // κ
+  const float* sign = nullptr;      // σ
   Matrices<const float> scaled;     // κB, times the particles' volume
   const float* wallX = nullptr;     // null: no walls
   const float* wallY = nullptr;
@@ -193,7 +198,8 @@ struct PairLoops {
   void (*push)(const PairFrame&, const PushLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
-  void (*force)(const PairFrame&, const ForceLoop&, std::size_t begin, std::size_t end);
+  /// Returns the sums over the particles of what pairs make of their shifts: momentum, but for rounding 0 where all σ = 1.
+  std::array<double, 2> (*force)(const PairFrame&, const ForceLoop&, std::size_t begin, std::size_t end);
   void (*rate)(const PairFrame&, const RateLoop&, std::size_t begin, std::size_t end);
 };
 

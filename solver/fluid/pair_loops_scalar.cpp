@@ -46,6 +46,30 @@ void forEachParticle(const PairFrame& frame, std::size_t begin, std::size_t end,
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
 constexpr auto kTail = static_cast<float>(kernel::kTail);
 
+// A kernel and −(dW/dq)/q from m.
+struct Blend {
+  static float shape(float m) {
+    const float m3 = m * m * m;
+    return kNorm * (m3 * m * (1.0f + kTail * (m3 * m3)));
+  }
+  static float slope(float m) {
+    const float m3 = m * m * m;
+    return 2.0f * kNorm * (m3 * (1.0f + 2.5f * kTail * (m3 * m3)));
+  }
+};
+
+struct WendlandC2 {
+  static constexpr auto kFactor = static_cast<float>(kernel::kWendland);
+  static float shape(float m) {
+    const float h = std::sqrt(1.0f - m), k = 1.0f - h;
+    return kFactor * (k * k * (k * k) * (1.0f + 4.0f * h));
+  }
+  static float slope(float m) {
+    const float k = 1.0f - std::sqrt(1.0f - m);
+    return 5.0f * kFactor * (k * k * k);
+  }
+};
+
 // Returns what the gain adds to the excess.
 double updatePressure(const PressureUpdate& update, std::uint32_t i, float density, float diagonal) {
   const float gain = density - update.target[i];
@@ -106,28 +130,33 @@ double divergence(const PairFrame& frame, const DivergenceLoop& loop, std::size_
   return excess;
 }
 
-void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+template <typename Kernel>
+void momentsOf(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sum = 0.0f, sx = 0.0f, sy = 0.0f, squares = 0.0f, xx = 0.0f, xy = 0.0f, yy = 0.0f;
     forEachPair(frame, cell, i, [&](std::uint32_t, float dx, float dy, float m) {
-      const float m3 = m * m * m;
-      sum += m3 * m * (1.0f + kTail * (m3 * m3));
-      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
-      sx += f * dx;
-      sy += f * dy;
+      sum += Kernel::shape(m);
+      const float f = Kernel::slope(m);
+      sx -= f * dx;
+      sy -= f * dy;
       xx += f * dx * dx;
       xy += f * dx * dy;
       yy += f * dy * dy;
       squares += f * f * (dx * dx + dy * dy);
     });
-    loop.density[i] = kNorm * sum + (loop.lambda != nullptr ? loop.lambda[i] : 0.0f);
-    loop.skewX[i] = -2.0f * kNorm * sx;
-    loop.skewY[i] = -2.0f * kNorm * sy;
-    loop.squares[i] = 4.0f * kNorm * kNorm * squares;
-    loop.moment.xx[i] = 2.0f * kNorm * xx;
-    loop.moment.xy[i] = 2.0f * kNorm * xy;
-    loop.moment.yy[i] = 2.0f * kNorm * yy;
+    loop.density[i] = sum + (loop.lambda != nullptr ? loop.lambda[i] : 0.0f);
+    loop.skewX[i] = sx;
+    loop.skewY[i] = sy;
+    loop.squares[i] = squares;
+    loop.moment.xx[i] = xx;
+    loop.moment.xy[i] = xy;
+    loop.moment.yy[i] = yy;
   });
+}
+
+void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+  frame.kernel == kernel::Kind::Blend ? momentsOf<Blend>(frame, loop, begin, end)
+                                      : momentsOf<WendlandC2>(frame, loop, begin, end);
 }
 
 // Adds what a wall does to a move, and the pressure to those before it.
@@ -182,14 +211,13 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
   });
 }
 
-void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
+template <typename Kernel>
+void viscosityOf(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sx = 0.0f, sy = 0.0f;
     const float vx = loop.vx[i], vy = loop.vy[i];
     forEachPair(frame, cell, i, [&](std::uint32_t j, float, float, float m) {
-      const float m3 = m * m * m;
-      const float m6 = m3 * m3;
-      const float weight = kNorm * m3 * (loop.a * m * (1.0f + kTail * m6) + 2.0f * loop.b * (1.0f + 2.5f * kTail * m6));
+      const float weight = loop.a * Kernel::shape(m) + loop.b * Kernel::slope(m);
       sx += weight * (loop.vx[j] - vx);
       sy += weight * (loop.vy[j] - vy);
     });
@@ -198,24 +226,33 @@ void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t be
   });
 }
 
-void force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
+void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
+  frame.kernel == kernel::Kind::Blend ? viscosityOf<Blend>(frame, loop, begin, end)
+                                      : viscosityOf<WendlandC2>(frame, loop, begin, end);
+}
+
+std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
+  std::array<double, 2> total{0.0, 0.0};
   forEachParticle(frame, begin, end, [&](std::uint32_t cell, std::uint32_t i) {
     float sx = 0.0f, sy = 0.0f;
-    const float ownXX = loop.scaled.xx[i], ownXY = loop.scaled.xy[i], ownYY = loop.scaled.yy[i];
+    const float sign = loop.sign[i];
+    const float ownXX = sign * loop.scaled.xx[i], ownXY = sign * loop.scaled.xy[i], ownYY = sign * loop.scaled.yy[i];
     forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
-      const float m3 = m * m * m;
-      const float f = m3 * (1.0f + 2.5f * kTail * (m3 * m3));
+      const float f = WendlandC2::slope(m);
       const float xx = ownXX + loop.scaled.xx[j], xy = ownXY + loop.scaled.xy[j], yy = ownYY + loop.scaled.yy[j];
       sx += f * (xx * dx + xy * dy);
       sy += f * (xy * dx + yy * dy);
     });
-    float moveX = 2.0f * kNorm * sx, moveY = 2.0f * kNorm * sy;
+    float moveX = sx, moveY = sy;
+    total[0] += static_cast<double>(moveX);
+    total[1] += static_cast<double>(moveY);
     takeMove(loop, i, moveX, moveY);
     loop.shiftX[i] = moveX;
     loop.shiftY[i] = moveY;
     loop.ux[i] += moveX;
     loop.uy[i] += moveY;
   });
+  return total;
 }
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
@@ -224,13 +261,12 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
     const float ux = loop.ux[i], uy = loop.uy[i], excess = loop.excess[i], ax = loop.ax[i], ay = loop.ay[i];
     const float xx = loop.correction.xx[i], xy = loop.correction.xy[i], yy = loop.correction.yy[i];
     forEachPair(frame, cell, i, [&](std::uint32_t j, float dx, float dy, float m) {
-      const float m3 = m * m * m;
       const float away = (ux - loop.ux[j]) * (xx * dx + xy * dy) + (uy - loop.uy[j]) * (xy * dx + yy * dy);
       const float along = 0.5f * ((ax + loop.ax[j]) * dx + (ay + loop.ay[j]) * dy);
       const float jump = loop.excess[j] - excess + loop.slope * along;
-      sum += m3 * (1.0f + 2.5f * kTail * (m3 * m3)) * (away - loop.diffusion * jump);
+      sum += WendlandC2::slope(m) * (away - loop.diffusion * jump);
     });
-    float gain = -2.0f * kNorm * sum;
+    float gain = -sum;
     if (loop.wallX != nullptr) {
       gain += 2.0f * (loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallShare * loop.wallGain[i]);
     }

@@ -69,10 +69,10 @@ double densityOnly(const PairFrame& frame, const DensityLoop& loop, std::size_t 
 }
 
 // To sums: W, ∇W = (px, py) and |∇W|², without their factors.
+template <typename Kernel>
 HWY_INLINE void addNeighbour(VF m, VF dx, VF dy, VF& px, VF& py, VF* sums) {
-  const VF m3 = hn::Mul(m, hn::Mul(m, m));
-  sums[0] = hn::Add(sums[0], shapeOf(m, m3));
-  const VF slope = slopeOf(m3);
+  sums[0] = hn::Add(sums[0], Kernel::shape(m));
+  const VF slope = Kernel::slope(m);
   px = hn::Mul(slope, dx);
   py = hn::Mul(slope, dy);
   sums[1] = hn::Add(sums[1], px);
@@ -87,7 +87,7 @@ double densityAndDiagonal(const PairFrame& frame, const DensityLoop& loop, std::
       frame, begin, end, nullptr,
       [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
         VF px, py;
-        addNeighbour(m, dx, dy, px, py, sums);
+        addNeighbour<Blend>(m, dx, dy, px, py, sums);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
         VF density = hn::Mul(hn::Set(f, kNorm), sums[0]);
@@ -136,22 +136,23 @@ double divergence(const PairFrame& frame, const DivergenceLoop& loop, std::size_
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(f, excess)));
 }
 
-void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+template <typename Kernel>
+void momentsOf(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   sweepCells<7, 0>(
       frame, begin, end, nullptr,
       [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
         VF px, py;
-        addNeighbour(m, dx, dy, px, py, sums);
+        addNeighbour<Kernel>(m, dx, dy, px, py, sums);
         sums[4] = hn::MulAdd(px, dx, sums[4]);
         sums[5] = hn::MulAdd(px, dy, sums[5]);
         sums[6] = hn::MulAdd(py, dy, sums[6]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF density = hn::Mul(hn::Set(f, kNorm), sums[0]);
+        VF density = hn::Mul(hn::Set(f, Kernel::kShape), sums[0]);
         if (loop.lambda != nullptr) density = hn::Add(density, loadSome(loop.lambda + i, count));
         storeSome(density, loop.density + i, count);
-        const VF scale = hn::Set(f, -4.0f * kNorm), second = hn::Set(f, 8.0f * kNorm);
+        const VF scale = hn::Set(f, -2.0f * Kernel::kSlope), second = hn::Set(f, 4.0f * Kernel::kSlope);
         storeSome(hn::Mul(scale, sums[1]), loop.skewX + i, count);
         storeSome(hn::Mul(scale, sums[2]), loop.skewY + i, count);
         storeSome(hn::Mul(hn::Mul(scale, scale), sums[3]), loop.squares + i, count);
@@ -159,6 +160,11 @@ void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, 
         storeSome(hn::Mul(second, sums[5]), loop.moment.xy + i, count);
         storeSome(hn::Mul(second, sums[6]), loop.moment.yy + i, count);
       });
+}
+
+void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
+  frame.kernel == kernel::Kind::Blend ? momentsOf<Blend>(frame, loop, begin, end)
+                                      : momentsOf<WendlandC2>(frame, loop, begin, end);
 }
 
 // Adds what a wall does to a move, and the pressure to those before it.
@@ -221,44 +227,55 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
       });
 }
 
-void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
+template <typename Kernel>
+void viscosityOf(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  const VF a = hn::Set(f, loop.a), twiceB = hn::Set(f, 2.0f * loop.b);
+  const VF a = hn::Set(f, loop.a * Kernel::kShape), b = hn::Set(f, loop.b * Kernel::kSlope);
   const float* const values[2] = {loop.vx, loop.vy};
   sweepCells<2, 2>(
       frame, begin, end, values,
       [&](VF m, VF, VF, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
-        const VF m3 = hn::Mul(m, hn::Mul(m, m));
-        const VF weight = hn::MulAdd(a, shapeOf(m, m3), hn::Mul(twiceB, slopeOf(m3)));
+        const VF weight = hn::MulAdd(a, Kernel::shape(m), hn::Mul(b, Kernel::slope(m)));
         sums[0] = hn::MulAdd(weight, hn::Sub(other[0], own[0]), sums[0]);
         sums[1] = hn::MulAdd(weight, hn::Sub(other[1], own[1]), sums[1]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        storeSome(hn::Mul(hn::Set(f, kNorm), sums[0]), loop.changeX + i, count);
-        storeSome(hn::Mul(hn::Set(f, kNorm), sums[1]), loop.changeY + i, count);
+        storeSome(sums[0], loop.changeX + i, count);
+        storeSome(sums[1], loop.changeY + i, count);
       });
 }
 
-void force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
+void viscosity(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
+  frame.kernel == kernel::Kind::Blend ? viscosityOf<Blend>(frame, loop, begin, end)
+                                      : viscosityOf<WendlandC2>(frame, loop, begin, end);
+}
+
+std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  const float* const values[3] = {loop.scaled.xx, loop.scaled.xy, loop.scaled.yy};
-  sweepCells<2, 3>(
+  VF totalX = hn::Zero(f), totalY = hn::Zero(f);
+  const float* const values[4] = {loop.scaled.xx, loop.scaled.xy, loop.scaled.yy, loop.sign};
+  sweepCells<2, 3, 1>(
       frame, begin, end, values,
       [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
-        const VF slope = slopeOf(hn::Mul(m, hn::Mul(m, m)));
+        const VF slope = WendlandC2::slope(m);
         const VF px = hn::Mul(slope, dx), py = hn::Mul(slope, dy);
-        const VF xy = hn::Add(own[1], other[1]);
-        sums[0] = hn::MulAdd(hn::Add(own[0], other[0]), px, hn::MulAdd(xy, py, sums[0]));
-        sums[1] = hn::MulAdd(xy, px, hn::MulAdd(hn::Add(own[2], other[2]), py, sums[1]));
+        const VF xx = hn::MulAdd(own[3], own[0], other[0]), xy = hn::MulAdd(own[3], own[1], other[1]);
+        const VF yy = hn::MulAdd(own[3], own[2], other[2]);
+        sums[0] = hn::MulAdd(xx, px, hn::MulAdd(xy, py, sums[0]));
+        sums[1] = hn::MulAdd(xy, px, hn::MulAdd(yy, py, sums[1]));
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF moveX = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[0]), moveY = hn::Mul(hn::Set(f, 4.0f * kNorm), sums[1]);
+        VF moveX = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[0]), moveY = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[1]);
+        const auto these = hn::FirstN(f, count);
+        totalX = hn::Add(totalX, hn::IfThenElseZero(these, moveX));
+        totalY = hn::Add(totalY, hn::IfThenElseZero(these, moveY));
         takeMove(loop, i, count, moveX, moveY);
         storeSome(moveX, loop.shiftX + i, count);
         storeSome(moveY, loop.shiftY + i, count);
         storeSome(hn::Add(loadSome(loop.ux + i, count), moveX), loop.ux + i, count);
         storeSome(hn::Add(loadSome(loop.uy + i, count), moveY), loop.uy + i, count);
       });
+  return {static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalX))), static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalY)))};
 }
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
@@ -274,10 +291,10 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
         const VF along = hn::MulAdd(hn::Add(own[3], other[3]), dx, hn::Mul(hn::Add(own[4], other[4]), dy));
         const VF jump = hn::MulAdd(slope, along, hn::Sub(other[2], own[2]));
         const VF change = hn::NegMulAdd(diffusion, jump, away);
-        sums[0] = hn::MulAdd(slopeOf(hn::Mul(m, hn::Mul(m, m))), change, sums[0]);
+        sums[0] = hn::MulAdd(WendlandC2::slope(m), change, sums[0]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF gain = hn::Mul(hn::Set(f, -4.0f * kNorm), sums[0]);
+        VF gain = hn::Mul(hn::Set(f, -2.0f * WendlandC2::kSlope), sums[0]);
         if (loop.wallX != nullptr) {
           VF wall = hn::Mul(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count));
           wall = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), wall);

@@ -35,17 +35,40 @@ constexpr float kUnit = 1.0f / static_cast<float>(lattice::kUnitsPerSpacing);
 constexpr auto kNorm = static_cast<float>(kernel::kNorm);
 constexpr auto kTail = static_cast<float>(kernel::kTail);
 
-// The kernel without its factor, from m and m³.
-HWY_INLINE VF shapeOf(VF m, VF m3) {
-  const F f;
-  return hn::Mul(hn::Mul(m3, m), hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, kTail), hn::Set(f, 1.0f)));
-}
-
 // The gradient's factor without −2·kNorm, from m³.
 HWY_INLINE VF slopeOf(VF m3) {
   const F f;
   return hn::Mul(m3, hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, 2.5f * kTail), hn::Set(f, 1.0f)));
 }
+
+// A kernel and (dW/dq)/q, as shape·kShape and −slope·kSlope, from m = max(0, 1 − q²/4): 0 for m = 0.
+struct Blend {
+  static constexpr float kShape = kNorm, kSlope = 2.0f * kNorm;
+  static HWY_INLINE VF shape(VF m) {
+    const F f;
+    const VF m3 = hn::Mul(m, hn::Mul(m, m));
+    return hn::Mul(hn::Mul(m3, m), hn::MulAdd(hn::Mul(m3, m3), hn::Set(f, kTail), hn::Set(f, 1.0f)));
+  }
+  static HWY_INLINE VF slope(VF m) { return slopeOf(hn::Mul(m, hn::Mul(m, m))); }
+};
+
+struct WendlandC2 {
+  static constexpr auto kShape = static_cast<float>(kernel::kWendland);
+  static constexpr auto kSlope = static_cast<float>(5.0 * kernel::kWendland);
+  static HWY_INLINE VF half(VF m) {  // q/2
+    const F f;
+    return hn::Sqrt(hn::Sub(hn::Set(f, 1.0f), m));
+  }
+  static HWY_INLINE VF shape(VF m) {
+    const F f;
+    const VF h = half(m), k = hn::Sub(hn::Set(f, 1.0f), h), k2 = hn::Mul(k, k);
+    return hn::Mul(hn::Mul(k2, k2), hn::MulAdd(hn::Set(f, 4.0f), h, hn::Set(f, 1.0f)));
+  }
+  static HWY_INLINE VF slope(VF m) {
+    const VF k = hn::Sub(hn::Set(F(), 1.0f), half(m));
+    return hn::Mul(k, hn::Mul(k, k));
+  }
+};
 
 constexpr std::uint32_t kLanes = HWY_LANES(float);
 constexpr std::uint32_t kRows = 16;  // particles whose sums are reduced together

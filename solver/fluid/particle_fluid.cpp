@@ -34,10 +34,10 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
     : def_(def),
       domain_(domain),
       unit_(supportOf(def) / kernel::kSupport),
-      volume_(latticeVolume(def.spacing / unit_)),
+      volume_(latticeVolume(def.spacing / unit_, settings.kernel)),
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
-      walls_(unit_, latticeRecession(def.spacing / unit_), {def.group, def.collidesWith}),
+      walls_(unit_, latticeRecession(def.spacing / unit_, settings.kernel), settings.kernel, {def.group, def.collidesWith}),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }
@@ -229,7 +229,8 @@ PairFrame ParticleFluid::frame() const {
           latticeY_.data(),
           domain_.periodicX ? lattice::coordinate(period.x()) : 0,
           domain_.periodicY ? lattice::coordinate(period.y()) : 0,
-          walls_.hidden()};
+          walls_.hidden(),
+          settings_.kernel};
 }
 
 DensityLoop ParticleFluid::densityLoop(float* density, float* diagonal, const PressureUpdate& update) const {

@@ -34,6 +34,7 @@ class ParticleFluid : public FluidModel {
     // Largest κ, of twice the typical pressure and of the highest one: beyond, the arrangement of the particles rings.
     double typicalStiffness, largestStiffness;
     double smoothing;  // XSPH, times √κ: a viscosity of smoothing·dx·√p on any step
+    kernel::Kind kernel = kernel::Kind::Blend;
   };
   ParticleFluid(const FluidDef& def, const DomainDef& domain, ParticlePool& pool, const Settings& settings);
 
@@ -79,6 +80,7 @@ class ParticleFluid : public FluidModel {
   double volume_;  // of a particle in units², over the kernel's sum on its lattice
   // Share of a velocity's Laplacian that Morris' term feels.
   double laplacianMoment_ = kernel::kLaplacianMoment;
+  double pairViscosity_ = 0.0;  // between particles, on top of the fluid's own [m²/s]
   ColumnId<float> pressure_, density_;
   CellGrid grid_;
   WallLayer walls_;

@@ -74,10 +74,11 @@ void ParticleFluid::applyViscosity(const StepContext& context, ParticlePool& poo
   });
   const double stiffness = pressureUnit(context.dt) * largestPressure_;
   const double viscous = def_.viscosity * context.dt / (unit_ * unit_);
+  const double pairs = pairViscosity_ * context.dt / (unit_ * unit_);
   const ViscosityLoop loop{velocityX_.data(),
                            velocityY_.data(),
                            static_cast<float>(settings_.smoothing * std::sqrt(stiffness) * volume_),
-                           static_cast<float>(2.0 * viscous * volume_ / laplacianMoment_),
+                           static_cast<float>(2.0 * (viscous + pairs) * volume_ / laplacianMoment_),
                            smoothX_.data(),
                            smoothY_.data()};
   runViscosity(context, loop);

@@ -20,7 +20,7 @@ struct LineIntegrals {
   double angle;   // ∫ (1 − 2πG) dθ, 1 − 2πG(r) = 0.8 m⁵ + 0.2 m¹¹
 };
 
-LineIntegrals lineIntegrals(double d, double s, double theta) {
+LineIntegrals blendIntegrals(double d, double s, double theta) {
   const double big = 1.0 - 0.25 * d * d;
   const double m = big - 0.25 * s * s;
   double b = s, a = theta, power = 1.0;
@@ -39,10 +39,26 @@ LineIntegrals lineIntegrals(double d, double s, double theta) {
   return {(kShare4 * 5.0 * b4 + kShare10 * 11.0 * b) / (4.0 * kPi), kShare4 * a5 + kShare10 * a};
 }
 
+// Wendland's kernel is w/kWendland = 1 − 5/2 r² + 5/2 r³ − 15/16 r⁴ + 1/8 r⁵, and 2πG = 7/4 r² − 35/16 r⁴ + 7/4 r⁵ −
+// 35/64 r⁶ + 1/16 r⁷. Of I_n = ∫ r^n ds each second one follows: I_n = (s·r^n + n·d²·I_{n−2})/(n + 1), from I_0 = s and
+// I_{−1} = asinh(s/d).
+LineIntegrals wendlandIntegrals(double d, double s, double theta) {
+  const double d2 = d * d, r2 = d2 + s * s, r = std::sqrt(r2);
+  const double i2 = (s * r2 + 2.0 * d2 * s) / 3.0, i4 = (s * r2 * r2 + 4.0 * d2 * i2) / 5.0;
+  const double i1 = 0.5 * (s * r + (d > 0.0 ? d2 * std::asinh(s / d) : 0.0));
+  const double i3 = (s * r2 * r + 3.0 * d2 * i1) / 4.0, i5 = (s * r2 * r2 * r + 5.0 * d2 * i3) / 6.0;
+  return {kernel::kWendland * (s - 2.5 * i2 + 2.5 * i3 - 0.9375 * i4 + 0.125 * i5),
+          theta - d * (1.75 * s - 2.1875 * i2 + 1.75 * i3 - 0.546875 * i4 + 0.0625 * i5)};
+}
+
+LineIntegrals lineIntegrals(kernel::Kind kind, double d, double s, double theta) {
+  return kind == kernel::Kind::Blend ? blendIntegrals(d, s, theta) : wendlandIntegrals(d, s, theta);
+}
+
 // ∫ w dr from r to the support radius.
-double radialIntegral(double r) {
+double radialIntegral(kernel::Kind kind, double r) {
   if (r >= kReach) return 0.0;
-  return lineIntegrals(0.0, kReach, 0.0).kernel - lineIntegrals(0.0, r, 0.0).kernel;
+  return lineIntegrals(kind, 0.0, kReach, 0.0).kernel - lineIntegrals(kind, 0.0, r, 0.0).kernel;
 }
 
 struct Wedge {
@@ -51,7 +67,7 @@ struct Wedge {
 };
 
 // One visible piece of a wall from p1 to p2, seen counter-clockwise from the origin (cross(p1, p2) > 0).
-Wedge integrateWedge(const Vec2& p1, const Vec2& p2) {
+Wedge integrateWedge(const Vec2& p1, const Vec2& p2, kernel::Kind kind) {
   const Vec2 along = p2 - p1;
   const double length = along.norm();
   Wedge wedge;
@@ -65,15 +81,15 @@ Wedge integrateWedge(const Vec2& p1, const Vec2& p2) {
   const double s2 = std::min(t.dot(p2), half);
   if (s1 >= s2) return wedge;
 
-  const LineIntegrals from = lineIntegrals(d, s1, std::atan2(s1, d));
-  const LineIntegrals to = lineIntegrals(d, s2, std::atan2(s2, d));
+  const LineIntegrals from = lineIntegrals(kind, d, s1, std::atan2(s1, d));
+  const LineIntegrals to = lineIntegrals(kind, d, s2, std::atan2(s2, d));
   wedge.lambda = (to.angle - from.angle) / (2.0 * kPi);
   wedge.gradient = (to.kernel - from.kernel) * towards;
   // Shadow lines: only where the piece ends within the support radius.
   const double r1 = p1.norm();
   const double r2 = p2.norm();
-  if (r1 < kReach && r1 > 0.0) wedge.gradient -= radialIntegral(r1) / r1 * rightNormal(p1);
-  if (r2 < kReach && r2 > 0.0) wedge.gradient -= radialIntegral(r2) / r2 * leftNormal(p2);
+  if (r1 < kReach && r1 > 0.0) wedge.gradient -= radialIntegral(kind, r1) / r1 * rightNormal(p1);
+  if (r2 < kReach && r2 > 0.0) wedge.gradient -= radialIntegral(kind, r2) / r2 * leftNormal(p2);
   return wedge;
 }
 
@@ -115,7 +131,7 @@ double rayDistance(const Front& f, const Vec2& u) {
 }
 
 // Fronts that hide one another: between neighbouring end directions the nearest front is the visible one.
-std::size_t integrateHidden(std::span<const Front> fronts, std::span<WallShare> shares) {
+std::size_t integrateHidden(std::span<const Front> fronts, std::span<WallShare> shares, kernel::Kind kind) {
   std::array<double, 2 * kMaxWallEdges> angle;
   std::size_t n = 0;
   for (const Front& f : fronts) {
@@ -145,7 +161,7 @@ std::size_t integrateHidden(std::span<const Front> fronts, std::span<WallShare> 
       const Vec2 v(std::cos(a), std::sin(a));
       return Vec2(v * (cross(nearest->p1, along) / cross(v, along)));
     };
-    addShare(shares, count, nearest->owner, integrateWedge(onFront(from), onFront(to)));
+    addShare(shares, count, nearest->owner, integrateWedge(onFront(from), onFront(to), kind));
   }
   return count;
 }
@@ -157,7 +173,7 @@ struct Table {
   Table() {
     for (std::size_t i = 0; i <= kTableSize; ++i) {
       const double d = kReach * static_cast<double>(i) / kTableSize;
-      const Wedge w = integrateWedge({3.0, std::max(d, 1e-12)}, {-3.0, std::max(d, 1e-12)});
+      const Wedge w = integrateWedge({3.0, std::max(d, 1e-12)}, {-3.0, std::max(d, 1e-12)}, kernel::Kind::Blend);
       entry[i] = {w.lambda, w.gradient.y()};
     }
   }
@@ -165,7 +181,7 @@ struct Table {
 
 }  // namespace
 
-std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares) {
+std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares, kernel::Kind kind) {
   FROUDE_ASSERT(edges.size() <= kMaxWallEdges && shares.size() >= edges.size());
   std::array<Front, kMaxWallEdges> fronts;
   std::size_t n = 0;
@@ -176,19 +192,19 @@ std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare>
   for (std::size_t i = 0; i < n && !hidden; ++i) {
     for (std::size_t j = i + 1; j < n && !hidden; ++j) hidden = anglesOverlap(fronts[i], fronts[j]);
   }
-  if (hidden) return integrateHidden({fronts.data(), n}, shares);
+  if (hidden) return integrateHidden({fronts.data(), n}, shares, kind);
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    addShare(shares, count, fronts[i].owner, integrateWedge(fronts[i].p1, fronts[i].p2));
+    addShare(shares, count, fronts[i].owner, integrateWedge(fronts[i].p1, fronts[i].p2, kind));
   return count;
 }
 
 // Each edge's wedge reaches from the edge to infinity: those of the faces that look away take off what is not solid.
-std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares) {
+std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares, kernel::Kind kind) {
   std::size_t count = 0;
   for (const WallEdge& e : edges) {
     const bool front = cross(e.a, e.b) < 0.0;
-    Wedge wedge = front ? integrateWedge(e.b, e.a) : integrateWedge(e.a, e.b);
+    Wedge wedge = front ? integrateWedge(e.b, e.a, kind) : integrateWedge(e.a, e.b, kind);
     if (!front) wedge = {-wedge.lambda, -wedge.gradient};
     addShare(shares, count, e.owner, wedge);
   }
@@ -274,6 +290,12 @@ HalfPlane halfPlane(double distance) {
   const double lambda = h00 * a.lambda - h10 * kStep * a.slope + h01 * b.lambda - h11 * kStep * b.slope;
   const double slope = a.slope + f * (b.slope - a.slope);
   return {distance >= 0.0 ? lambda : 1.0 - lambda, slope};
+}
+
+double halfPlaneShare(double distance, kernel::Kind kind) {
+  const double d = std::max(std::abs(distance), 1e-12);
+  const double lambda = d < kReach ? integrateWedge({3.0, d}, {-3.0, d}, kind).lambda : 0.0;
+  return distance >= 0.0 ? lambda : 1.0 - lambda;
 }
 
 }  // namespace froude

@@ -12,6 +12,7 @@
 #include <span>
 
 #include <froude/base/types.h>
+#include <froude/solver/fluid/kernel.h>
 
 namespace froude {
 
@@ -36,11 +37,13 @@ inline constexpr std::size_t kMaxWallEdges = 64;
 /// at most kMaxWallEdges. Writes one share per owner, in order of first appearance, to `shares` (room for edges.size())
 /// and returns their number. Cost: O(k) for k front-facing edges that do not hide one another, O(k²) otherwise.
 /// Accuracy: closed forms in double, 1e-13 of λ.
-std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares);
+std::size_t integrateWalls(std::span<const WallEdge> edges, std::span<WallShare> shares,
+                           kernel::Kind kind = kernel::Kind::Blend);
 
 /// The same of the solids alone: what they hide is not counted. All edges within the support radius, faces that look
 /// away too; where solids overlap, both count. Cost: O(k). Accuracy as above.
-std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares);
+std::size_t integrateSolids(std::span<const WallEdge> edges, std::span<WallShare> shares,
+                            kernel::Kind kind = kernel::Kind::Blend);
 
 /// Is there a solid so thin that the fluid behind it must be hidden? Edges as above. Thin is a solid whose opposite
 /// faces are nearer than the support radius, or a corner sharper than 40 degrees; also solids of two owners that cross.
@@ -51,12 +54,14 @@ bool anyThin(std::span<const WallEdge> edges);
 bool hiddenByThin(std::span<const WallEdge> edges, const Vec2& p);
 
 /// λ and −dλ/dd of a half-plane at signed distance d spacings from its edge (d > 0 outside), from a table of cubic
-/// interpolation; error below 1e-9 (tested). Outside |d| < 2: 0 or 1.
+/// interpolation; error below 1e-9 (tested). Outside |d| < 2: 0 or 1. Of the kernel Blend.
 struct HalfPlane {
   double lambda;
   double slope;  // −dλ/dd ≥ 0
 };
 HalfPlane halfPlane(double distance);
+/// λ of the same by the closed form, of either kernel.
+double halfPlaneShare(double distance, kernel::Kind kind);
 
 /// True if the segment from the origin to `p` crosses the edge (touching an end counts as crossing).
 inline bool hidesPoint(const WallEdge& e, const Vec2& p) {

@@ -115,7 +115,7 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   const std::size_t front = recede({buffer.data(), n}, recession_, thick);
   std::array<WallShare, kMaxWallEdges> shares;
   const std::size_t owners =
-      thick ? integrateSolids({buffer.data(), front}, shares) : integrateWalls({buffer.data(), front}, shares);
+      thick ? integrateSolids({buffer.data(), front}, shares, kernel_) : integrateWalls({buffer.data(), front}, shares, kernel_);
   double pulls = 0.0;
   for (std::size_t k = 0; k < owners; ++k) {
     const WallShare& share = shares[k];

@@ -8,6 +8,7 @@
 #include <froude/base/aligned.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/obstacles.h>
+#include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/pair_loops.h>
 
 namespace froude {
@@ -26,9 +27,9 @@ struct WallLink {
 class WallLayer {
  public:
   /// spacing: the unit of λ's gradient, half a kernel's support radius [m]; recession: by how much walls stand back, in
-  /// these units (`latticeRecession`); filter: of the fluid.
-  WallLayer(double spacing, double recession, CollisionFilter filter)
-      : spacing_(spacing), recession_(recession), filter_(filter) {}
+  /// these units (`latticeRecession`); kind: the kernel; filter: of the fluid.
+  WallLayer(double spacing, double recession, kernel::Kind kind, CollisionFilter filter)
+      : spacing_(spacing), recession_(recession), kernel_(kind), filter_(filter) {}
 
   /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a
   /// look-up a particle, and the wall integral for those within the support radius of a wall.
@@ -83,6 +84,7 @@ class WallLayer {
                   std::span<const double> y, std::uint32_t i, Block& block);
 
   double spacing_, recession_;
+  kernel::Kind kernel_;
   CollisionFilter filter_;
   AlignedArray<float> lambda_, gradientX_, gradientY_, tangent_;
   AlignedArray<std::int32_t> offset_;

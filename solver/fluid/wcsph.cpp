@@ -1,8 +1,6 @@
 #include <froude/solver/fluid/wcsph.h>
 
 #include <bit>
-#include <cstdlib>
-#include <cstdio>
 #include <utility>
 
 #include <froude/solver/fluid/lattice.h>
@@ -10,21 +8,22 @@
 namespace froude {
 namespace {
 
-double env(const char* name, double v) { const char* s = std::getenv(name); return s ? std::atof(s) : v; }
-const double kCourant = env("W_COURANT", 0.2);  // of the support radius a sub-step
-const double kMach = env("W_MACH", 0.1);       // largest speed that is to be expected, over c
-const double kMostMach = 0.12;    // speed inside the fluid at which c is raised
-const double kAcoustic = env("W_AC", 1.0);     // units/(c + v) an acoustic step; 2 is where it would be unstable
-constexpr int kMostSteps = 64;    // acoustic ones a sub-step
-const float kEven = env("W_EVEN", 1.0);   // of S, times the way in units, by which a particle gives way to an uneven neighbourhood
-const float kMostEven = 0.3f;
-const float kStray = env("W_STRAY", 0.07);   // of the same, by which a particle strays
-const int kClamp = env("W_CLAMP", 1), kStart = env("W_START", 1);
-constexpr double kStartSweeps = 40.0;  // at most, times √N
-constexpr float kStartStep = 0.6f;
+// Measurements: docs/decisions/solver-wcsph.md.
+constexpr double kCourant = 0.2;   // of the support radius a sub-step
+constexpr double kMach = 0.1;      // largest speed that is to be expected, over c
+constexpr double kMostMach = 0.12; // inside the fluid; beyond, c is raised
+constexpr double kAcoustic = 1.0;  // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
+constexpr int kMostSteps = 64;     // acoustic ones a sub-step
+constexpr float kStiffest = 1.2f;  // diagonal of div grad from which a fluid is made softer
+constexpr double kReturn = 1e-3;   // of what densities differ from the sum over particles, taken back in an acoustic step
+constexpr double kMostReturn = 0.1;
+// Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
+// fastest in units, at most kMostWay.
+constexpr float kEven = 1.0f, kStray = 0.07f, kMostWay = 0.3f;
+// The start pressure: sweeps at most, times √N; their step, halved where they diverge; errors over the first one.
+constexpr double kStartSweeps = 40.0, kStartTolerance = 0.02, kDiverged = 1e2;
+constexpr float kStartStep = 0.6f, kLeastStartStep = 0.05f;
 constexpr float kInnerDiagonal = 0.5f;  // half of the largest eigenvalue of div grad inside a fluid
-const float kStiffest = env("W_STIFF", 1.2);
-constexpr double kStartTolerance = 1e-3;
 
 // In [−1, 1), from a particle's handle and the time: the same on any number of threads, straight through or resumed.
 float stray(std::uint64_t seed) {
@@ -38,7 +37,7 @@ float stray(std::uint64_t seed) {
 }  // namespace
 
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
-    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0}) {}
+    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0, kernel::Kind::WendlandC2}) {}
 
 void Wcsph::archive(Archive& a) { a.value("sound speed", soundSpeed_); }
 
@@ -46,25 +45,28 @@ double Wcsph::acousticStep(double speed) const { return kAcoustic * unit_ / (sou
 
 StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = ParticleFluid::stepBound(pool, maxSpeed, gravity);
-  if (soundSpeed_ > 0.0) bound.tighten(kMostSteps * acousticStep(maxSpeed), StepLimit::Acoustic);
+  if (soundSpeed_ == 0.0) return bound;
+  bound.tighten(kMostSteps * acousticStep(flowSpeed_), StepLimit::Acoustic);
+  const double alpha = def_.compressible.artificialViscosity;
+  if (alpha > 0.0) bound.tighten(unit_ / (alpha * soundSpeed_), StepLimit::Viscosity);
   return bound;
 }
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &wayX_, &wayY_, &share_}) {
+  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &wayX_, &wayY_, &share_, &sign_}) {
     a->resize(pool.size());
   }
   const bool fresh = soundSpeed_ == 0.0;
   findArrangement(context, nextExcess_.data(), diagonal_.data());
   findWallGain(context, context.dt);
   chooseSoundSpeed(context, pool);
-  const int steps = def_.sweeps > 0 ? def_.sweeps
-                                    : static_cast<int>(std::ceil(context.dt / acousticStep(flowSpeed_) * (1.0 - 1e-9)));
+  const double wanted = std::ceil(context.dt / acousticStep(flowSpeed_) * (1.0 - 1e-9));
+  const int steps = def_.sweeps > 0 ? def_.sweeps : static_cast<int>(std::min(wanted, 2.0 * kMostSteps));
   start(context, pool, steps);
   bodies_.startFrom({wallGain_.data(), pool.size()});
-  if (fresh && kStart) findStartPressure(context);
+  if (fresh) findStartPressure(context);
   for (int k = 0; k < steps; ++k) {
-    takePressures();
+    takePressures(true);
     kick(context, steps);
     compress(context, moveX_.data(), moveY_.data(), def_.compressible.densityDiffusion, 1.0 / steps);
     drift();
@@ -111,7 +113,10 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   stiffness_ = static_cast<float>(soundSpeed_ * soundSpeed_ * perUnit * perUnit);
   background_ = static_cast<float>(def_.compressible.backgroundPressure / (def_.density * soundSpeed_ * soundSpeed_));
   constexpr auto kUnits = static_cast<float>(lattice::kUnitsPerSpacing);
-  if (arrangement_.hasSurface()) background_ = 0.0f;
+  const bool open = arrangement_.hasSurface();
+  if (open) background_ = 0.0f;
+  taken_ = Vec2(0.0, 0.0);
+  const auto back = static_cast<float>(std::min(kMostReturn, kReturn * steps));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec2 g = context.gravity.at({x[i], y[i]}, context.time);
@@ -125,6 +130,8 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(wayX_[i] * kUnits)));
       latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(wayY_[i] * kUnits)));
       excess_[i] = density[i] > 0.0f ? density[i] - 1.0f : 0.0f;
+      if (!arrangement_.atSurface(i)) excess_[i] += back * (nextExcess_[i] - 1.0f - excess_[i]);
+      sign_[i] = open && arrangement_.inside(i) && excess_[i] < 0.0f ? -1.0f : 1.0f;
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
   });
@@ -146,16 +153,33 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
 // tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
 void Wcsph::findStartPressure(const StepContext& context) {
   const std::size_t n = grid_.size();
+  const float stiffness = std::exchange(stiffness_, 1.0f), background = std::exchange(background_, 0.0f);
+  bool found = false;
+  for (float step = kStartStep; !found && step > kLeastStartStep; step *= 0.5f) {
+    for (std::size_t i = 0; i < n; ++i) share_[i] = step / std::max(diagonal_[i], kInnerDiagonal);
+    found = sweepStartPressure(context);
+  }
+  // Else it starts from none, and bounces.
+  const float compliance = found ? 1.0f / stiffness : 0.0f;
+  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) excess_[i] = found ? excess_[i] * compliance : 0.0f;
+  });
+  stiffness_ = stiffness;
+  background_ = background;
+  limitStiffness();
+}
+
+// False where it diverges.
+bool Wcsph::sweepStartPressure(const StepContext& context) {
+  const std::size_t n = grid_.size();
   const double rows = std::sqrt(static_cast<double>(n));
   const auto momentum = static_cast<float>(std::pow((rows - 1.0) / (rows + 1.0), 2));
-  const float stiffness = std::exchange(stiffness_, 1.0f);
   AlignedArray<float>& last = smoothX_;
   std::fill_n(last.begin(), n, 0.0f);
   std::fill_n(excess_.begin(), n, 0.0f);
-  for (std::size_t i = 0; i < n; ++i) share_[i] = kStartStep / std::max(diagonal_[i], kInnerDiagonal);
   double first = 0.0;
   for (int sweep = 0; sweep < static_cast<int>(kStartSweeps * rows); ++sweep) {
-    takePressures();
+    takePressures(false);
     std::copy_n(fallX_.begin(), n, velocityX_.begin());
     std::copy_n(fallY_.begin(), n, velocityY_.begin());
     accelerate(context, velocityX_.data(), velocityY_.data(), nullptr);
@@ -163,23 +187,20 @@ void Wcsph::findStartPressure(const StepContext& context) {
     const double error = parallelSum(n, [&](std::size_t begin, std::size_t end) {
       double part = 0.0;
       for (std::size_t i = begin; i < end; ++i) {
-        const float gain = arrangement_.atSurface(i) ? std::max(excess_[i] - nextExcess_[i], -nextExcess_[i]) : excess_[i] - nextExcess_[i];
-        excess_[i] = nextExcess_[i] + gain + momentum * (nextExcess_[i] - last[i]);
+        const float before = nextExcess_[i];
+        float gain = excess_[i] - before;
+        if (arrangement_.atSurface(i)) gain = std::max(gain, -before);
+        excess_[i] = before + gain + momentum * (before - last[i]);
         part += static_cast<double>(std::abs(gain));
-        last[i] = nextExcess_[i];
+        last[i] = before;
       }
       return part;
     });
-    if (std::getenv("W_DBG") && sweep < 60) { std::size_t w = 0; for (std::size_t i = 0; i < n; ++i) if (std::abs(excess_[i]) > std::abs(excess_[w])) w = i; std::fprintf(stderr, "%d %g max %g at %g %g lambda %g g %g %g diag %g dens %d\n", sweep, error, excess_[w], predictedX_[w], predictedY_[w], walls_.lambda()[w], walls_.gradientX()[w], walls_.gradientY()[w], diagonal_[w], (int)arrangement_.place(w)); }
     if (sweep == 0) first = error;
-    if (error <= kStartTolerance * first) break;
+    if (error <= kStartTolerance * first) return true;
+    if (!(error < kDiverged * first)) return false;
   }
-  const float compliance = 1.0f / stiffness;
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) excess_[i] *= compliance;
-  });
-  stiffness_ = stiffness;
-  limitStiffness();
+  return true;
 }
 
 // Where walls make a corner, pressures push harder and densities gain more: there the fluid is softer, or the acoustic
@@ -189,13 +210,13 @@ void Wcsph::limitStiffness() {
 }
 
 // Tait's exponent is 7.
-void Wcsph::takePressures() {
+void Wcsph::takePressures(bool byEquation) {
   const Matrices<const float> b = arrangement_.correction();
-  const bool tait = def_.compressible.equation == EquationOfState::Tait;
+  const bool tait = byEquation && def_.compressible.equation == EquationOfState::Tait;
   const auto volume = static_cast<float>(volume_);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (arrangement_.atSurface(i) && kClamp) excess_[i] = std::max(0.0f, excess_[i]);
+      if (arrangement_.atSurface(i)) excess_[i] = std::max(0.0f, excess_[i]);
       float kappa = excess_[i];
       if (tait) {
         const float r = 1.0f + kappa, r3 = r * r * r;
@@ -213,6 +234,7 @@ void Wcsph::takePressures() {
 // To `shift` and on top of u what the pressures do.
 void Wcsph::accelerate(const StepContext& context, float* ux, float* uy, float* kappa) {
   const ForceLoop loop{change_.data(),
+                       sign_.data(),
                        {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()},
                        walls_.any() ? walls_.gradientX() : nullptr,
                        walls_.gradientY(),
@@ -224,8 +246,11 @@ void Wcsph::accelerate(const StepContext& context, float* ux, float* uy, float* 
                        kappa};
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
-  parallelFor(occupied_.size(), kCellBlock,
-              [&](std::size_t begin, std::size_t end) { loops.force(pairs, loop, begin, end); });
+  pairSums_.resize(blockCount(occupied_.size(), kCellBlock));
+  parallelFor(occupied_.size(), kCellBlock, [&](std::size_t begin, std::size_t end) {
+    pairSums_[begin / kCellBlock] = loops.force(pairs, loop, begin, end);
+  });
+  for (const std::array<double, 2>& sum : pairSums_) taken_ += Vec2(sum[0], sum[1]);
 }
 
 void Wcsph::kick(const StepContext& context, int steps) {
@@ -298,8 +323,9 @@ void Wcsph::drift() {
 void Wcsph::finish(const StepContext& context, ParticlePool& pool, int steps) {
   const auto density = pool.column(density_);
   const auto count = static_cast<float>(steps);
-  const auto way = static_cast<float>(2.0 * context.dt / unit_ * flowSpeed_);
-  const float even = std::min(kMostEven, kEven * way), astray = kStray * std::min(kMostEven, way);
+  giveBack();
+  const float way = std::min(kMostWay, static_cast<float>(2.0 * context.dt / unit_ * flowSpeed_));
+  const float even = kEven * way, astray = kStray * way;
   const auto moment = std::bit_cast<std::uint64_t>(context.time);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -309,10 +335,12 @@ void Wcsph::finish(const StepContext& context, ParticlePool& pool, int steps) {
       shiftX_[i] = wayX_[i];
       shiftY_[i] = wayY_[i];
       density[i] = 1.0f + excess_[i];
-      if (!arrangement_.deep(i)) continue;
+      if (!arrangement_.closed(i)) continue;
+      const float sx = arrangement_.skewX[i] + (walls_.any() ? walls_.gradientX()[i] : 0.0f);
+      const float sy = arrangement_.skewY[i] + (walls_.any() ? walls_.gradientY()[i] : 0.0f);
       const std::uint64_t seed = moment + 2 * i;
-      shiftX_[i] += astray * stray(seed) - even * arrangement_.skewX[i];
-      shiftY_[i] += astray * stray(seed + 1) - even * arrangement_.skewY[i];
+      shiftX_[i] += astray * stray(seed) - even * sx;
+      shiftY_[i] += astray * stray(seed + 1) - even * sy;
     }
   });
   for (const Carried& c : carried_) {
@@ -320,7 +348,27 @@ void Wcsph::finish(const StepContext& context, ParticlePool& pool, int steps) {
     shiftY_[c.particle] = wayY_[c.particle];
   }
   laplacianMoment_ = arrangement_.laplacianMoment();
+  // Of Monaghan's term in two dimensions (Rep. Prog. Phys. 68 (2005), eq. 4.6), h half the support radius.
+  pairViscosity_ = def_.compressible.artificialViscosity * soundSpeed_ * unit_ / 8.0;
   bodies_.settle(kappa_.data());
+}
+
+// What particles in tension took for themselves, over all acoustic steps, comes back to all of them alike.
+void Wcsph::giveBack() {
+  const double tense = parallelSum(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    double part = 0.0;
+    for (std::size_t i = begin; i < end; ++i) part += sign_[i] < 0.0f ? 1.0 : 0.0;
+    return part;
+  });
+  if (tense == 0.0) return;
+  const auto x = static_cast<float>(taken_.x() / tense), y = static_cast<float>(taken_.y() / tense);
+  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (sign_[i] > 0.0f) continue;
+      solvedX_[i] -= x;
+      solvedY_[i] -= y;
+    }
+  });
 }
 
 std::size_t Wcsph::memoryBytes() const {

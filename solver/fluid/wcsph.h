@@ -25,8 +25,10 @@ class Wcsph final : public ParticleFluid {
   void chooseSoundSpeed(const StepContext& context, const ParticlePool& pool);
   void start(const StepContext& context, const ParticlePool& pool, int steps);
   void limitStiffness();
+  void giveBack();
   void findStartPressure(const StepContext& context);
-  void takePressures();
+  bool sweepStartPressure(const StepContext& context);
+  void takePressures(bool byEquation);
   void accelerate(const StepContext& context, float* ux, float* uy, float* kappa);
   void kick(const StepContext& context, int steps);
   void compress(const StepContext& context, const float* ux, const float* uy, double diffusion, double wallShare);
@@ -41,6 +43,9 @@ class Wcsph final : public ParticleFluid {
   AlignedArray<float> moveX_, moveY_;         // velocity, as displacement in an acoustic step
   AlignedArray<float> fallX_, fallY_;         // gravity's share of that in an acoustic step
   AlignedArray<float> wayX_, wayY_;           // from where it was predicted
+  AlignedArray<float> sign_;                  // −1 where differences of pressure are felt, else 1
+  std::vector<std::array<double, 2>> pairSums_;  // by task
+  Vec2 taken_{0.0, 0.0};                      // by those in tension, of the momentum of all [units in an acoustic step]
   AlignedArray<float> share_;                 // of a gain of density
 };
 
