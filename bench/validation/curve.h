@@ -14,7 +14,18 @@ struct Curve {
   }
   /// Linear between the points; NaN outside of them.
   double at(double time) const;
+  /// Cubic through the four points about it, for curves without noise: an error of the order of the fourth power of
+  /// the points' distance. At least four points; `time` between the first and the last.
+  double smoothAt(double time) const;
+  /// Of the piecewise linear curve, over from … to, which must lie within it. Cost: the points.
+  double mean(double from, double to) const;
+  /// First time when the piecewise linear curve is at `level` or above; NaN if it never is.
+  double reaches(double level) const;
 };
+
+/// The median of what lies within half of `width` on either side, at each point. Cost: n w log w for w points in a
+/// width.
+Curve medianFiltered(const Curve& curve, double width);
 
 /// Two columns (by index) of a CSV file whose lines of numbers begin with a digit; with `series`, of its lines that
 /// begin with that word and a comma, which is then column 0. Throws Error for a file that cannot be read or has no such
