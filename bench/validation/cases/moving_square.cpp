@@ -18,7 +18,7 @@ class Drag final : public Measure {
       : scale_(-0.5 * scene.world.fluid->density), pressure_(std::move(pressure)), viscous_(std::move(viscous)) {}
 
   void read(const World& world, double t) override {
-    const double value = world.body(0).force.x() / scale_;
+    const double value = world.body(world.bodyIndex("square")).force.x() / scale_;
     if (t > 0.0) {
       // A step's force acted all along it: the windows get its shares.
       for (double from = last_; from < t;) {
