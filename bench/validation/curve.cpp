@@ -66,6 +66,21 @@ Curve medianFiltered(const Curve& curve, double width) {
   return filtered;
 }
 
+void WindowMeans::add(double from, double to, double value) {
+  for (auto k = static_cast<std::size_t>(from / length_); this->from(k) < to; ++k) {
+    const double time = std::min(to, this->from(k + 1)) - std::max(from, this->from(k));
+    if (time <= 0.0) continue;  // rounding at the edge of a window
+    if (windows_.size() <= k) windows_.resize(k + 1);
+    windows_[k].sum += value * time;
+    windows_[k].square += value * value * time;
+    windows_[k].time += time;
+  }
+}
+
+double WindowMeans::variance(std::size_t k) const {
+  return std::max(0.0, windows_[k].square / windows_[k].time - mean(k) * mean(k));
+}
+
 Curve readCurve(const std::string& file, std::size_t columnT, std::size_t columnZ, const std::string& series) {
   std::ifstream stream(file);
   Curve curve;

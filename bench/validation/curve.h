@@ -27,6 +27,27 @@ struct Curve {
 /// width.
 Curve medianFiltered(const Curve& curve, double width);
 
+/// Means of a value that holds along pieces of time, over windows of one length that begin at 0. A piece that reaches
+/// over several windows counts in each by its share.
+class WindowMeans {
+ public:
+  explicit WindowMeans(double length) : length_(length) {}
+  /// value from … to, 0 ≤ from; pieces in any order.
+  void add(double from, double to, double value);
+  std::size_t count() const { return windows_.size(); }
+  double from(std::size_t k) const { return length_ * static_cast<double>(k); }
+  double mean(std::size_t k) const { return windows_[k].sum / windows_[k].time; }
+  /// Variance about the mean.
+  double variance(std::size_t k) const;
+
+ private:
+  struct Window {
+    double sum = 0.0, square = 0.0, time = 0.0;
+  };
+  double length_;
+  std::vector<Window> windows_;
+};
+
 /// Two columns (by index) of a CSV file whose lines of numbers begin with a digit; with `series`, of its lines that
 /// begin with that word and a comma, which is then column 0. Throws Error for a file that cannot be read or has no such
 /// line.

@@ -18,49 +18,33 @@ class Drag final : public Measure {
       : scale_(-0.5 * scene.world.fluid->density), pressure_(std::move(pressure)), viscous_(std::move(viscous)) {}
 
   void read(const World& world, double t) override {
-    const double value = world.body(world.bodyIndex("square")).force.x() / scale_;
-    if (t > 0.0) {
-      // A step's force acted all along it: the windows get its shares.
-      for (double from = last_; from < t;) {
-        const auto k = static_cast<std::size_t>(from / kWindow * (1.0 + 1e-12));
-        const double to = std::max(std::min(t, kWindow * static_cast<double>(k + 1)), std::nextafter(from, t));
-        if (windows_.size() <= k) windows_.resize(k + 1);
-        windows_[k].impulse += value * (to - from);
-        windows_[k].square += value * value * (to - from);
-        windows_[k].length += to - from;
-        from = to;
-      }
-    }
+    // A step's force acted all along it.
+    if (t > 0.0) drag_.add(last_, t, world.body(world.bodyIndex("square")).force.x() / scale_);
     last_ = t;
   }
 
   std::vector<Metric> results() const override {
-    double square = 0.0, mean = 0.0, reference = 0.0, noise = 0.0, count = 0.0;
-    for (std::size_t k = 0; k < windows_.size(); ++k) {
-      const double from = kWindow * static_cast<double>(k), to = from + kWindow;
-      const Window& w = windows_[k];
+    double square = 0.0, mean = 0.0, right = 0.0, noise = 0.0, count = 0.0;
+    for (std::size_t k = 0; k < drag_.count(); ++k) {
+      const double from = drag_.from(k), to = drag_.from(k + 1);
       if (from < kFrom * (1.0 - 1e-9) || to > std::min(kTo, last_) * (1.0 + 1e-9)) continue;
-      const double right =
-          pressure_.mean(from, std::min(to, pressure_.t.back())) + viscous_.mean(from, std::min(to, viscous_.t.back()));
-      const double drag = w.impulse / w.length;
-      square += (drag - right) * (drag - right);
-      noise += std::max(0.0, w.square / w.length - drag * drag);
-      mean += drag;
-      reference += right;
+      const double end = std::min(to, pressure_.t.back());  // the table ends at 7.995
+      const double reference = pressure_.mean(from, end) + viscous_.mean(from, end);
+      square += std::pow(drag_.mean(k) - reference, 2);
+      noise += drag_.variance(k);
+      mean += drag_.mean(k);
+      right += reference;
       count += 1.0;
     }
-    return {{"drag", "1", std::sqrt(square * count) / reference, 0.1},
-            {"mean_drag", "1", mean / reference - 1.0, {}},
-            {"noise", "1", std::sqrt(noise * count) / reference, {}}};
+    return {{"drag", "1", std::sqrt(square * count) / right, 0.1},
+            {"mean_drag", "1", mean / right - 1.0, {}},
+            {"noise", "1", std::sqrt(noise * count) / right, {}}};
   }
 
  private:
-  struct Window {
-    double impulse = 0.0, square = 0.0, length = 0.0;
-  };
-  double scale_;
+  double scale_;  // [N/m]
   Curve pressure_, viscous_;
-  std::vector<Window> windows_;
+  WindowMeans drag_{kWindow};
   double last_ = 0.0;
 };
 
