@@ -46,7 +46,6 @@ World::Impl::Impl(const WorldDef& definition)
     if (!(def.fluid->viscosity >= 0.0) || !std::isfinite(def.fluid->viscosity)) {
       throw Error("fluid viscosity must be at least 0 m²/s");
     }
-    if (def.fluid->surfaceTension != 0.0) throw Error("surface tension is not in this version; leave it 0");
     checkPeriod(def);
     fluid = makePool("fluid");
     fluidModel = makeFluidModel(*def.fluid, def.domain, *fluid);

@@ -36,6 +36,7 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
       walls_(def.spacing, {def.group, def.collidesWith}),
+      tension_(def),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }
@@ -47,6 +48,7 @@ double ParticleFluid::pressureUnit(double dt) const { return dt * dt / (dx_ * dx
 StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = flowBound(pool, maxSpeed, gravity);
   tightenByViscosity(pool, bound);
+  if (tension_.any()) bound.tighten(tension_.longestStep(), StepLimit::Tension);
   return bound;
 }
 
@@ -114,6 +116,8 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
   predict(context, pool, impulses, stats);
   sortByCell(context, pool);
   meetWalls(context);
+  pullSurface(context, pool, impulses, stats);
+  linkBodies(context);
   solvePressure(context, pool, stats);
   if (overTurned(context, stats)) return;
   finishPositions(context, pool, impulses, stats);
@@ -214,6 +218,38 @@ void ParticleFluid::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
+}
+
+// As if it had been a part of the acceleration that was predicted, so that the pressures answer to it at once.
+void ParticleFluid::pullSurface(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses,
+                                StepStats& stats) {
+  if (!tension_.any()) return;
+  const std::size_t n = pool.size();
+  tension_.find(context, frame(), walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
+  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
+  const double unit = tension_.unit() * context.dt;
+  auto give = [&](std::uint32_t i, const Vec2& pull) {
+    const Vec2 change = unit * pull;
+    vx[i] += change.x();
+    vy[i] += change.y();
+    predictedX_[i] += context.dt * change.x();
+    predictedY_[i] += context.dt * change.y();
+    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
+    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
+    stats.tensionWork += particleMass() * change.dot(Vec2(vx[i], vy[i]));
+  };
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) { give(p.particle, p.pull); });
+  tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) {
+    give(p.particle, p.pull);
+    const Vec2 at = Vec2(x[p.particle], y[p.particle]) + dx_ * p.at, impulse = -particleMass() * unit * p.pull;
+    const Vec2 wall = context.obstacles.velocityAt(p.owner, at);
+    impulses.add(p.owner, at, impulse, wall);
+    stats.tensionWork += impulse.dot(wall);
+  });
+}
+
+void ParticleFluid::linkBodies(const StepContext& context) {
+  const std::size_t n = grid_.size();
   bodies_.begin(context.freeBodies, bodyUnits(context.dt));
   bodies_.link(walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
 }
