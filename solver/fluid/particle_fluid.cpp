@@ -116,11 +116,12 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
   predict(context, pool, impulses, stats);
   sortByCell(context, pool);
   meetWalls(context);
-  pullSurface(context, pool, impulses, stats);
+  if (tension_.any()) pullSurface(context, pool, impulses);
   linkBodies(context);
   solvePressure(context, pool, stats);
   if (overTurned(context, stats)) return;
   finishPositions(context, pool, impulses, stats);
+  if (tension_.any()) stats.tensionWork += tensionWork(context, pool);
   applyViscosity(context, pool, impulses);
   bookCarried(context, pool, impulses);
 }
@@ -218,34 +219,6 @@ void ParticleFluid::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
-}
-
-// As if it had been a part of the acceleration that was predicted, so that the pressures answer to it at once.
-void ParticleFluid::pullSurface(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses,
-                                StepStats& stats) {
-  if (!tension_.any()) return;
-  const std::size_t n = pool.size();
-  tension_.find(context, frame(), walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
-  const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
-  const double unit = tension_.unit() * context.dt;
-  auto give = [&](std::uint32_t i, const Vec2& pull) {
-    const Vec2 change = unit * pull;
-    vx[i] += change.x();
-    vy[i] += change.y();
-    predictedX_[i] += context.dt * change.x();
-    predictedY_[i] += context.dt * change.y();
-    latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
-    latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
-    stats.tensionWork += particleMass() * change.dot(Vec2(vx[i], vy[i]));
-  };
-  tension_.forEachPull([&](const SurfaceTension::Pull& p) { give(p.particle, p.pull); });
-  tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) {
-    give(p.particle, p.pull);
-    const Vec2 at = Vec2(x[p.particle], y[p.particle]) + dx_ * p.at, impulse = -particleMass() * unit * p.pull;
-    const Vec2 wall = context.obstacles.velocityAt(p.owner, at);
-    impulses.add(p.owner, at, impulse, wall);
-    stats.tensionWork += impulse.dot(wall);
-  });
 }
 
 void ParticleFluid::linkBodies(const StepContext& context) {
@@ -492,7 +465,7 @@ void ParticleFluid::resizeScratch(std::size_t n) {
 
 std::size_t ParticleFluid::memoryBytes() const {
   return 2 * predictedX_.capacity() * sizeof(double) + 16 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
-         walls_.memoryBytes() + coarse_.memoryBytes();
+         walls_.memoryBytes() + coarse_.memoryBytes() + tension_.memoryBytes();
 }
 
 }  // namespace froude

@@ -1,5 +1,5 @@
 // What all particle methods share: prediction, cells, walls, the pressure that is kept, paths to the end of a sub-step,
-// nozzles, viscosity and drag. A method adds how it finds its pressures.
+// nozzles, viscosity, drag and surface tension. A method adds how it finds its pressures.
 #pragma once
 
 #include <froude/base/aligned.h>
@@ -93,8 +93,10 @@ class ParticleFluid : public FluidModel {
   void predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);
-  void pullSurface(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void linkBodies(const StepContext& context);
+  // particle_tension.cpp
+  void pullSurface(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  double tensionWork(const StepContext& context, const ParticlePool& pool) const;
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   // particle_viscosity.cpp
   void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;

@@ -2,18 +2,21 @@
 #include <froude/solver/fluid/surface_tension.h>
 
 #include <array>
-#include <cstdlib>
 
 #include <froude/base/parallel.h>
 #include <froude/solver/fluid/lattice.h>
 
 namespace froude {
 namespace {
-double knob(const char* n, double d) { const char* s = getenv(n); return s ? atof(s) : d; }
-const double kStep = knob("FT_STEP", 0.25), kShare = knob("FT_SHARE", 0.866), kLeast = knob("FT_LEAST", 0.5);
+// Measurements: docs/decisions/solver-surface-tension.md.
+constexpr double kStep = 0.4;  // of √(ρ dx³/σ); a row of particles under tension is unstable beyond 1, drops from 0.7
+// The tension of a straight row, in units of what the energy gives a length: the gradient of the arcs between two discs
+// is 1/√(1 − d²/4), d² = 2/√3 on the hexagonal lattice that a fluid under pressure takes.
+constexpr double kShare = 0.84338;
+constexpr double kLeast = 0.5;  // of that root: discs that part are not held for ever more strongly
+// A particle is beside a void as large as a disc only if its density or the slope of it says so.
 constexpr float kFull = 0.97f, kSkew = 0.1f;
-
-constexpr std::size_t kCellBlock = 128;
+constexpr std::size_t kCellBlock = 128;  // cells a task
 
 }  // namespace
 
@@ -58,12 +61,9 @@ void SurfaceTension::find(const StepContext& context, const PairFrame& frame, co
 void SurfaceTension::findSurface(const StepContext& context, const PairFrame& frame, const WallLayer& walls) {
   const std::size_t n = frame.grid->size();
   for (AlignedArray<float>* a : {&filled_, &skewX_, &skewY_, &squares_, &xx_, &xy_, &yy_}) a->resize(n);
-  const MomentLoop loop{walls.any() ? walls.lambda() : nullptr,
-                        filled_.data(),
-                        skewX_.data(),
-                        skewY_.data(),
-                        squares_.data(),
-                        {xx_.data(), xy_.data(), yy_.data()}};
+  const MomentLoop loop{
+      walls.any() ? walls.lambda() : nullptr, filled_.data(), skewX_.data(), skewY_.data(), squares_.data(),
+      {xx_.data(), xy_.data(), yy_.data()}};
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(frame.cells.size(), kCellBlock,
               [&](std::size_t begin, std::size_t end) { loops.moments(frame, loop, begin, end); });
@@ -78,6 +78,7 @@ bool SurfaceTension::atSurface(const WallLayer& walls, std::uint32_t i) const {
   return filled_[i] < kFull || x * x + y * y > kSkew * kSkew;
 }
 
+// In the order of the cells, so that a rounding never depends on who asks.
 void SurfaceTension::gather(const PairFrame& frame, std::uint32_t cell, std::uint32_t i, std::vector<Neighbour>& near) {
   constexpr double kUnit = 1.0 / lattice::kUnitsPerSpacing;
   near.clear();
@@ -97,6 +98,7 @@ void SurfaceTension::gather(const PairFrame& frame, std::uint32_t cell, std::uin
   });
 }
 
+// Inside another disc, or behind a wall. `own`: the wall that the place is on.
 bool SurfaceTension::covered(const Vec2& at, std::span<const Neighbour> near, std::uint32_t but,
                              std::span<const WallEdge> edges, const WallEdge* own) {
   for (const Neighbour& k : near) {
@@ -108,6 +110,7 @@ bool SurfaceTension::covered(const Vec2& at, std::span<const Neighbour> near, st
   return false;
 }
 
+// A pair is found from its first particle alone, so that both are pulled alike whatever the rounding.
 void SurfaceTension::pullPairs(std::uint32_t i, std::span<const WallEdge> edges, Block& block) const {
   for (const Neighbour& j : block.near) {
     if (j.particle < i) continue;
@@ -126,6 +129,7 @@ void SurfaceTension::pullPairs(std::uint32_t i, std::span<const WallEdge> edges,
   }
 }
 
+// At a distance h the wall hides an arc, which grows as the disc comes nearer, and the chord is wet: gradients of both.
 void SurfaceTension::pullWalls(std::uint32_t i, std::span<const WallEdge> edges, Block& block) const {
   for (const WallEdge& e : edges) {
     const Vec2 along = (e.b - e.a).normalized(), normal = rightNormal(along);

@@ -1,5 +1,5 @@
-// Surface tension of particle fluids, the same for every method: the perimeter of discs around the particles pulls itself
-// together, and where it meets a wall, the wall pulls along itself.
+// Surface tension of particle fluids, the same for every method: the perimeter of discs around the particles pulls
+// itself together, and where it meets a wall, the wall pulls along itself.
 #pragma once
 
 #include <vector>
@@ -13,9 +13,10 @@
 namespace froude {
 
 /// The energy is σ times the perimeter of the union of discs of radius dx (half the support, so that discs meet where
-/// particles are neighbours). Its gradient are forces between the two particles at each vertex of the outline, along the
-/// line between them: momentum and moment of momentum are exact. At a wall, which hides what is behind it, the wetted
-/// length has the energy −σ cos θ, by Young's law for the contact angle θ. All of it in units of σ; lengths in spacings.
+/// particles are neighbours). Its gradient are forces between the two particles at each vertex of the outline, along
+/// the line between them: momentum and moment of momentum are exact. At a wall, which hides what is behind it, the
+/// wetted length has the energy −σ cos θ, by Young's law for the contact angle θ. All of it in units of σ; lengths in
+/// spacings.
 class SurfaceTension {
  public:
   explicit SurfaceTension(const FluidDef& def);
@@ -39,8 +40,8 @@ class SurfaceTension {
     Vec2 pull;
     Vec2 at;  // from the particle
   };
-  /// Finds all pulls, at the coordinates of the frame and at x, y [m]. Cost: one loop over pairs, and for particles at a
-  /// surface a test of each of their outline's vertices against their neighbours.
+  /// Finds all pulls, at the coordinates of the frame and at x, y [m]. Cost: one loop over pairs, and for particles at
+  /// a surface a test of each of their outline's vertices against their neighbours.
   void find(const StepContext& context, const PairFrame& frame, const WallLayer& walls, std::span<const double> x,
             std::span<const double> y);
   /// visit(const Pull&) in an order that does not depend on threads; a particle may come several times.

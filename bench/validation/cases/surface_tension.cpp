@@ -1,77 +1,147 @@
-// prototype
+// Drops under surface tension: the pressure inside one at rest, the period of one that swings, the angle at a floor.
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
-#include "validation/exact.h"
 #include "validation/read_off.h"
 #include "validation/validation.h"
 
 namespace froude::validation {
 namespace {
-class Resting final : public Measure {
+
+const FluidDef& fluidOf(const World& world) { return *world.definition().fluid; }
+
+/// Radius of the disc with the fluid's area [m].
+double radius(const World& world) { return std::sqrt(world.totals().mass / fluidOf(world).density / kPi); }
+
+/// Means over the second half of the run.
+class AtRest final : public Measure {
  public:
+  explicit AtRest(const scene::Scene& scene) : from_(0.5 * scene.duration) {}
+
   void read(const World& world, double t) override {
+    if (t < from_) return;
     const ParticlePool& pool = *world.fluid();
-    auto p = pool.column(*pool.findColumn<float>("pressure"));
     const Moments m = moments(pool);
-    double sum = 0, n = 0, v2 = 0, vm = 0, skin=0; double rmax=0;
-    for (std::size_t i = 0; i < pool.size(); ++i) {
-      const double r = std::hypot(pool.x()[i] - m.centre.x(), pool.y()[i] - m.centre.y());
-      rmax=std::max(r,rmax);
-      const double s = pool.vx()[i]*pool.vx()[i] + pool.vy()[i]*pool.vy()[i];
-      v2 += s; vm = std::max(vm, std::sqrt(s));
-      if (r < 0.3) { sum += (double)p[i]; n += 1; } else if (r>0.42) skin=std::max(skin,(double)p[i]);
+    const double r = radius(world);
+    double pressure = 0.0, largest = 0.0;
+    int count = 0;
+    constexpr int kPlaces = 12;  // each way, over the inner square of half the diameter
+    for (int k = 0; k < kPlaces * kPlaces; ++k) {
+      const Vec2 at((k % kPlaces + 0.5) / kPlaces - 0.5, (k / kPlaces + 0.5) / kPlaces - 0.5);
+      pressure += world.pressureAt(m.centre + r * at);
+      ++count;
     }
-    sum /= n; v2 = std::sqrt(v2 / (double)pool.size());
-    if (t > 0.5) { mean_ += sum; ++count_; rms_ += v2; max_ = std::max(max_, vm); }
-    if (getenv("FT_TRACE")) printf("t %.3f p %.3f skin %.2f rms %.4f max %.4f axes %.4f %.4f rmax %.4f\n", t, sum, skin, v2, vm, m.axisX(), m.axisY(), rmax);
+    for (std::size_t i = 0; i < pool.size(); ++i) largest = std::max(largest, std::hypot(pool.vx()[i], pool.vy()[i]));
+    pressure_ += pressure / count / (fluidOf(world).surfaceTension / r) - 1.0;
+    // Of the speed of capillary waves as long as the radius.
+    const double scale = std::sqrt(fluidOf(world).surfaceTension / (fluidOf(world).density * r));
+    rms_ += std::sqrt(2.0 * m.kinetic) / scale;
+    largest_ = std::max(largest_, largest / scale);
+    ++count_;
   }
   std::vector<Metric> results() const override {
-    return {{"pressure", "1", mean_ / count_ * 0.5 - 1.0, 0.05}, {"rms", "m/s", rms_ / count_, {}}, {"max", "m/s", max_, {}}};
+    return {{"pressure", "1", pressure_ / count_, 0.05},
+            {"speed_rms", "1", rms_ / count_, {}},
+            {"speed_largest", "1", largest_, {}}};
   }
-  double mean_ = 0, count_ = 0, rms_ = 0, max_ = 0;
+
+ private:
+  double from_, pressure_ = 0.0, rms_ = 0.0, largest_ = 0.0, count_ = 0.0;
 };
-class Oscil final : public Measure {
+
+/// From the first to the last time that the drop is round.
+class Oscillating final : public Measure {
  public:
   void read(const World& world, double t) override {
     const Moments m = moments(*world.fluid());
-    const double lying = (m.xx - m.yy)/(m.xx+m.yy);
-    if (getenv("FT_TRACE")) printf("t %.3f lying %.4f kin %.5f\n", t, lying, m.kinetic);
-    if (t>0 && last_ < 0 && lying >= 0) { double at=lastT_ + (t - lastT_) * last_ / (last_ - lying); if (first_<0) first_=at; end_=at; ++n_; }
-    if (t>0 && last_ >= 0 && lying < 0) { double at=lastT_ + (t - lastT_) * last_ / (last_ - lying); if (down0_<0) down0_=at; }
-    last_ = lying; lastT_ = t;
+    const double lying = (m.xx - m.yy) / (m.xx + m.yy);
+    if (t == 0.0) {
+      const double r = radius(world);
+      exact_ = 2.0 * kPi / std::sqrt(6.0 * fluidOf(world).surfaceTension / (fluidOf(world).density * r * r * r));
+    } else if (t > 0.25 * exact_ && last_ * lying < 0.0) {  // at its start it is round
+      const double at = lastTime_ + (t - lastTime_) * last_ / (last_ - lying);
+      if (turns_ == 0) first_ = at;
+      end_ = at;
+      ++turns_;
+    }
+    largest_ = t < 0.5 * exact_ ? std::max(largest_, lying) : largest_;
+    lateLargest_ = t > 1.5 * exact_ ? std::max(lateLargest_, std::abs(lying)) : 0.0;
+    last_ = lying;
+    lastTime_ = t;
   }
   std::vector<Metric> results() const override {
-    return {{"period1", "1", (first_-down0_)*2/0.9069 - 1, 0.05},{"period", "1", n_>1?(end_-first_)/(n_-1)/0.9069-1:99, 0.05}};
+    std::vector<Metric> metrics;
+    if (turns_ > 1) metrics.push_back({"period", "1", 2.0 * (end_ - first_) / (turns_ - 1) / exact_ - 1.0, 0.05});
+    metrics.push_back({"amplitude", "1", lateLargest_ / largest_ - 1.0, {}, false});
+    return metrics;
   }
-  double last_=0,lastT_=0,first_=-1,end_=0,down0_=-1; int n_=0;
+
+ private:
+  double exact_ = 0.0, last_ = 0.0, lastTime_ = 0.0, first_ = 0.0, end_ = 0.0, largest_ = 0.0, lateLargest_ = 0.0;
+  int turns_ = 0;
 };
+
+/// The angle of the circle's cap with the area and the centroid that the fluid has, mean over the second half.
 class Cap final : public Measure {
  public:
-  explicit Cap(double theta, double dx) : theta_(theta), dx_(dx) {}
-  static double height(double a) { const double s = std::sin(a), area = a - s * std::cos(a); return (-std::cos(a) + 2.0 / 3.0 * s * s * s / area) / std::sqrt(area); }
+  explicit Cap(const scene::Scene& scene) : from_(0.5 * scene.duration) {}
+
   void read(const World& world, double t) override {
-    const ParticlePool& pool = *world.fluid();
-    const double area = (double)pool.size() * dx_ * dx_;
-    const Moments m = moments(pool);
-    double lo = 0.01, hi = 3.14;
-    for (int k = 0; k < 50; ++k) { double mid = 0.5 * (lo + hi); (height(mid) < m.centre.y() / std::sqrt(area) ? lo : hi) = mid; }
-    angle_ = lo * 180 / 3.14159265;
-    double w=0, top=0; for (std::size_t i=0;i<pool.size();++i) { top=std::max(top,pool.y()[i]); if (pool.y()[i]<dx_) w=std::max(w,std::abs(pool.x()[i])); }
-    top += 0.5*dx_; w+=0.5*dx_;
-    if (getenv("FT_TRACE")) printf("t %.3f angle %.2f  from top/base %.2f rms %.5f\n", t, angle_, 2*std::atan(top/w)*180/3.14159265, std::sqrt(2*m.kinetic));
+    if (t < from_) return;
+    const double height = moments(*world.fluid()).centre.y() / (std::sqrt(kPi) * radius(world));
+    double low = 0.01, high = kPi - 0.01;
+    for (int k = 0; k < 50; ++k) {
+      const double angle = 0.5 * (low + high);
+      (centroid(angle) < height ? low : high) = angle;
+    }
+    sum_ += (low - fluidOf(world).contactAngle) * 180.0 / kPi;
+    ++count_;
   }
-  std::vector<Metric> results() const override { return {{"angle", "deg", angle_ - theta_, 5.0}}; }
-  double theta_, dx_, angle_ = 0;
+  std::vector<Metric> results() const override { return {{"angle", "deg", sum_ / count_, 5.0}}; }
+
+ private:
+  /// Of a cap above its base, over the square root of its area.
+  static double centroid(double angle) {
+    const double s = std::sin(angle), area = angle - s * std::cos(angle);
+    return (2.0 / 3.0 * s * s * s / area - std::cos(angle)) / std::sqrt(area);
+  }
+  double from_, sum_ = 0.0, count_ = 0.0;
 };
-const Registered kCap{{.name = "contact_angle", .measures = "x", .scene = "contact_angle", .every = 0.2,
-  .full = {{0.05, 0.025}, {}}, .quick = {{0.05}, {}}, .measure = [](const scene::Scene& s) { return std::make_unique<Cap>(s.world.fluid->contactAngle*180/3.14159265,s.world.fluid->spacing); }}};
-const Registered kCap2{{.name = "contact_angle_120", .measures = "x", .scene = "contact_angle", .every = 0.2,
-  .full = {{0.05, 0.025}, {{"fluid.contact_angle","120.0"}}}, .quick = {{0.05}, {{"fluid.contact_angle","120.0"}}}, .measure = [](const scene::Scene& s) { return std::make_unique<Cap>(s.world.fluid->contactAngle*180/3.14159265,s.world.fluid->spacing); }}};
-const Registered kRest{{.name = "surface_tension", .measures = "x", .scene = "surface_tension", .every = 0.02,
-  .full = {{0.05, 0.025, 0.0125}, {}}, .quick = {{0.05}, {}}, .measure = [](const scene::Scene&) { return std::make_unique<Resting>(); }}};
-const Registered kOsc{{.name = "oscillating_drop", .measures = "x", .scene = "oscillating_drop", .every = 0.01,
-  .full = {{0.05, 0.025, 0.0125}, {{"duration","2.0"}}}, .quick = {{0.05}, {{"duration","2.0"}}}, .measure = [](const scene::Scene&) { return std::make_unique<Oscil>(); }}};
-}
-}
+
+const Registered kAtRest{
+    {.name = "surface_tension",
+     .measures = "means over the second half: pressure inside the drop over σ/R; rms and largest speed over √(σ/(ρR))",
+     .scene = "surface_tension",
+     .every = 0.02,
+     .full = {{0.05, 0.025, 0.0125}, {}},
+     .quick = {{0.05}, {}},
+     .measure = [](const scene::Scene& scene) { return std::make_unique<AtRest>(scene); }}};
+
+const Registered kOscillating{{.name = "oscillating_drop",
+                               .measures = "mean period of the second mode over that of ω² = 6σ/(ρR³); amplitude lost "
+                                           "from the first half period to after "
+                                           "one and a half",
+                               .scene = "oscillating_drop",
+                               .every = 0.01,
+                               .full = {{0.05, 0.025, 0.0125}, {}},
+                               .quick = {{0.05}, {}},
+                               .measure = [](const scene::Scene&) { return std::make_unique<Oscillating>(); }}};
+
+const Registered kWetting{
+    {.name = "contact_angle",
+     .measures = "angle of the circle's cap with the drop's area and centroid, against 60 degrees",
+     .scene = "contact_angle",
+     .every = 0.05,
+     .full = {{0.05, 0.025, 0.0125}, {}},
+     .quick = {{0.05}, {}},
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Cap>(scene); }}};
+
+const Registered kBeading{{.name = "contact_angle_120",
+                           .measures = "the same drop, against 120 degrees",
+                           .scene = "contact_angle",
+                           .every = 0.05,
+                           .full = {{0.05, 0.025, 0.0125}, {{"fluid.contact_angle", "120.0"}}},
+                           .quick = {{0.05}, {{"fluid.contact_angle", "120.0"}}},
+                           .measure = [](const scene::Scene& scene) { return std::make_unique<Cap>(scene); }}};
+
+}  // namespace
+}  // namespace froude::validation
