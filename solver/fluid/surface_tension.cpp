@@ -9,7 +9,7 @@
 namespace froude {
 namespace {
 // Measurements: docs/decisions/solver-surface-tension.md.
-constexpr double kStep = 0.4;  // of √(ρ dx³/σ); a row of particles under tension is unstable beyond 1, drops from 0.7
+constexpr double kStep = 0.2;  // of √(ρ dx³/σ); a row of particles would be unstable from 1, drops are from 0.35
 // The tension of a straight row, in units of what the energy gives a length: the gradient of the arcs between two discs
 // is 1/√(1 − d²/4), d² = 2/√3 on the hexagonal lattice that a fluid under pressure takes.
 constexpr double kShare = 0.84338;
