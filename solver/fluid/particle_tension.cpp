@@ -23,7 +23,10 @@ void ParticleFluid::pullSurface(const StepContext& context, ParticlePool& pool, 
     predictedX_[i] = x[i] + context.dt * vx[i];
     predictedY_[i] = y[i] + context.dt * vy[i];
   };
-  tension_.forEachPull([&](const SurfaceTension::Pull& p) { give(p.particle, p.pull); });
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) {
+    give(p.first, p.pull);
+    give(p.second, -p.pull);
+  });
   tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) { give(p.particle, p.pull); });
   for (Carried& c : carried_) {
     const std::uint32_t i = c.particle;
@@ -34,7 +37,10 @@ void ParticleFluid::pullSurface(const StepContext& context, ParticlePool& pool, 
     latticeX_[i] = lattice::coordinate((predictedX_[i] - domain_.box.min.x()) / dx_);
     latticeY_[i] = lattice::coordinate((predictedY_[i] - domain_.box.min.y()) / dx_);
   };
-  tension_.forEachPull([&](const SurfaceTension::Pull& p) { place(p.particle); });
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) {
+    place(p.first);
+    place(p.second);
+  });
   tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) { place(p.particle); });
 }
 
@@ -43,8 +49,9 @@ void ParticleFluid::pullSurface(const StepContext& context, ParticlePool& pool, 
 double ParticleFluid::tensionWork(const StepContext& context, const ParticlePool& pool) const {
   const auto vx = pool.vx(), vy = pool.vy();
   double power = 0.0;
-  tension_.forEachPull(
-      [&](const SurfaceTension::Pull& p) { power += p.pull.dot(Vec2(vx[p.particle], vy[p.particle])); });
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) {
+    power -= p.pull.dot(Vec2(vx[p.second] - vx[p.first], vy[p.second] - vy[p.first]));
+  });
   tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) {
     const Vec2 at = Vec2(pool.x()[p.particle], pool.y()[p.particle]) + dx_ * p.at;
     power += p.pull.dot(Vec2(vx[p.particle], vy[p.particle]) - context.obstacles.velocityAt(p.owner, at));

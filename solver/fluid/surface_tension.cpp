@@ -14,6 +14,8 @@ constexpr double kStep = 0.2;  // of √(ρ dx³/σ); a row of particles would b
 // is 1/√(1 − d²/4), d² = 2/√3 on the hexagonal lattice that a fluid under pressure takes.
 constexpr double kShare = 0.84338;
 constexpr double kLeast = 0.5;  // of that root: discs that part are not held for ever more strongly
+// Without it, energy that position-only corrections give to the skin, pull by pull, grows until it boils.
+constexpr double kCalm = 0.03;  // kinematic viscosity, of √(σ dx/ρ)
 // A particle is beside a void as large as a disc only if its density or the slope of it says so.
 constexpr float kFull = 0.97f, kSkew = 0.1f;
 constexpr std::size_t kCellBlock = 128;  // cells a task
@@ -30,6 +32,8 @@ SurfaceTension::SurfaceTension(const FluidDef& def)
 double SurfaceTension::longestStep() const {
   return kStep * std::sqrt(density_ * spacing_ * spacing_ * spacing_ / tension_);
 }
+
+double SurfaceTension::viscosity() const { return any() ? kCalm * std::sqrt(tension_ * spacing_ / density_) : 0.0; }
 
 void SurfaceTension::find(const StepContext& context, const PairFrame& frame, const WallLayer& walls,
                           std::span<const double> x, std::span<const double> y) {
@@ -124,8 +128,7 @@ void SurfaceTension::pullPairs(std::uint32_t i, std::span<const WallEdge> edges,
     }
     if (vertices == 0) continue;
     const Vec2 pull = kShare * vertices / std::max(half, kLeast) * along;
-    block.pulls.push_back({i, pull});
-    block.pulls.push_back({j.particle, -pull});
+    block.pulls.push_back({i, j.particle, pull});
   }
 }
 

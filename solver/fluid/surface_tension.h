@@ -25,12 +25,14 @@ class SurfaceTension {
   bool any() const { return tension_ > 0.0; }
   /// Largest sub-step [s]: a share of √(ρ dx³/σ), the time of the shortest capillary waves.
   double longestStep() const;
+  /// The least kinematic viscosity at which an outline is calm [m²/s]; 0 where σ is 0.
+  double viscosity() const;
   /// Acceleration by a pull of 1 [m/s²]: σ/(ρ dx²).
   double unit() const { return tension_ / (density_ * spacing_ * spacing_); }
 
-  /// What the fluid's own outline does to a particle.
+  /// What the outline does to two particles: the second gets the opposite.
   struct Pull {
-    std::uint32_t particle;
+    std::uint32_t first, second;
     Vec2 pull;
   };
   /// What a wall does to a particle where the outline meets it.
