@@ -80,7 +80,7 @@ TEST_P(SurfaceTension, a_drop_swings_with_the_period_of_rayleigh) {
 }
 
 // As much mass again far away: what a drop loses is not given to another.
-TEST_P(SurfaceTension, momentum_and_its_moment_close_to_rounding_for_each_drop) {
+TEST_P(SurfaceTension, momentum_closes_to_rounding_for_each_drop) {
   WorldDef def = tenseWorld({{-3.0, -1.0}, {3.0, 1.0}}, 0.05);
   World world(def);
   for (const double side : {-1.5, 1.5}) {
