@@ -57,7 +57,6 @@ FluidDef readFluidDef(TableReader& fluid) {
   def.density = fluid.number("density", Range::positive(1e12), 1000.0);
   def.viscosity = fluid.number("viscosity", Range::notNegative(1e6), 1.0e-6);
   def.surfaceTension = fluid.number("surface_tension", Range::notNegative(1e6), 0.0);
-  if (def.surfaceTension > 0.0) fluid.fail("surface_tension", "surface tension is not in this version, right is 0");
   def.contactAngle = kDegrees * fluid.number("contact_angle", Range::between(0.0, 180.0), 90.0);
   readFilter(fluid, def.group, def.collidesWith);
   return def;
