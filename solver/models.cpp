@@ -23,14 +23,15 @@ std::span<const ModelCard> modelCards() {
       {"pbf",
        "Position based fluid",
        "incompressible fluid with a free surface by density constraints, walls exact for polygons, free-slip or "
-       "no-slip",
-       "negative pressure, surface tension; viscosity only as a laminar term, which is also what sticks to no-slip "
+       "no-slip; surface tension with a contact angle",
+       "negative pressure; viscosity only as a laminar term, which is also what sticks to no-slip "
        "walls",
        {"courant * support / v_max, courant = 0.6 unless set", "0.25 sqrt(support / g)",
         "dx sqrt(0.15 / (p / density)), p twice the typical pressure sum p^2 / sum p; 0.3 for the largest",
         "0.125 dx^2 / viscosity; where that would halve the step or worse the velocities are solved for, and "
         "0.0025 H^2 / viscosity binds, H the smaller extent of the fluid",
-        "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+        "0.2 sqrt(density dx^3 / surface tension)", "0.25 * support / speed of a moving polygon",
+        "0.5 rad of spin of a moving polygon"},
        {"at most 30 sweeps a step: hit hard, a deep fluid is compressed by several per cent for some steps",
         "the pressure at a single place is up to 3 % of the largest off, by the arrangement of the particles around it",
         "no tension: an accelerated stream breaks up into strands of particles"},
@@ -41,13 +42,14 @@ std::span<const ModelCard> modelCards() {
       {"dfsph",
        "Divergence-free SPH",
        "incompressible fluid with a free surface, pressures below zero inside it, walls exact for polygons, free-slip "
-       "or no-slip, laminar viscosity",
-       "surface tension; tension at a free surface or a wall",
+       "or no-slip, laminar viscosity, surface tension with a contact angle",
+       "negative pressure at a free surface or a wall",
        {"courant * support / v_max, courant = 0.4 unless set", "0.25 sqrt(support / g)",
         "dx sqrt(0.15 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.3 for the largest",
         "0.125 dx^2 / viscosity; where that would halve the step or worse the velocities are solved for, and "
         "0.0025 H^2 / viscosity binds, H the smaller extent of the fluid",
-        "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+        "0.2 sqrt(density dx^3 / surface tension)", "0.25 * support / speed of a moving polygon",
+        "0.5 rad of spin of a moving polygon"},
        {"rows of particles that a flow shears give way at once: a burst of noise that costs a vortex of 50 spacings a "
         "fifth of its energy, one of 100 a twentieth",
         "at most 100 sweeps a step: a fluid hit hard is compressed by a few per cent for some steps",

@@ -19,6 +19,7 @@ enum class StepLimit : int {
   Pressure,      // dx/√(p/ρ): the stiffness of the particles' arrangement under pressure
   Viscosity,     // dx²/ν
   Acoustic,      // dx/(speed of sound)
+  Tension,       // √(ρ dx³/σ): the shortest waves of surface tension
   Spin,          // ω·dt ≤ 0.5 rad of a body
   Wall,          // a moving polygon's travel against the support radius
   Body,          // a free body's travel against its own thickness

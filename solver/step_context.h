@@ -132,6 +132,7 @@ struct StepStats {
   double maxCompression = 0.0;    // largest ρ/ρ0 − 1, over-dense starts included
   double meanCompression = 0.0;   // mean of max(0, ρ/ρ0 − 1)
   double gravityWork = 0.0;       // of a gravity field; constant gravity is in the potential energy [J/m]
+  double tensionWork = 0.0;       // what surface tension did for particles and free bodies [J/m]
   Vec2 gravityImpulse{0.0, 0.0};  // [kg/s]
   int sweeps = 0;
   std::uint64_t wallHits = 0;

@@ -88,8 +88,8 @@ double World::Impl::energyScale() const {
 }
 
 double World::Impl::outsideWork(const StepStats& stats, const Balance& after, double dt) const {
-  double work =
-      stats.gravityWork + impulses.work() + rigidStats.work + (gravity.isConstant() ? 0.0 : rigidStats.gravityWork);
+  double work = stats.gravityWork + stats.tensionWork + impulses.work() + rigidStats.work +
+                (gravity.isConstant() ? 0.0 : rigidStats.gravityWork);
   if (gravity.isConstant()) {
     if (def.domain.periodicX) work += gravity.constant().x() * after.momentum.x() * dt;
     if (def.domain.periodicY) work += gravity.constant().y() * after.momentum.y() * dt;

@@ -58,6 +58,11 @@ Vec2 taylorGreenBox(const Vec2& x, double t, double viscosity) {
   return taylorGreen(x - Vec2(0.25, 0.25), t, viscosity);
 }
 
+double standingWavePeriod(double L, double D, double g) {
+  const double k = 2.0 * kPi / L;
+  return 2.0 * kPi / std::sqrt(g * k * std::tanh(k * D));
+}
+
 Drop dropAt(double t, double A0, double B, double dt) {
   Drop drop{1.0, A0};
   const double steps = std::max(1.0, std::ceil(t / dt));

@@ -24,6 +24,10 @@ Vec2 taylorGreen(const Vec2& x, double t, double viscosity);
 /// u = f sin 2πx cos 2πy, v = −f cos 2πx sin 2πy.
 Vec2 taylorGreenBox(const Vec2& x, double t, double viscosity);
 
+/// Period of the small standing wave with one wave length L over the depth D [m], g [m/s²]: 2π/ω with ω² = g k tanh kD,
+/// k = 2π/L (H. Lamb, "Hydrodynamics", 6th ed., 1932, § 228). Its amplitude fades as exp(−2νk² t) (§ 348). [s]
+double standingWavePeriod(double L, double D, double g);
+
 /// An elliptic drop of ideal fluid, free all round, under the acceleration −B² x: its motion is affine, x = F ξ with F
 /// = diag(a, 1/a) for a circle of radius 1 and the initial velocity A0 (x, −y).
 struct Drop {

@@ -38,6 +38,7 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
       walls_(unit_, latticeRecession(def.spacing / unit_, settings.kernel), settings.kernel, {def.group, def.collidesWith}),
+      tension_(def),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }
@@ -49,6 +50,7 @@ double ParticleFluid::pressureUnit(double dt) const { return dt * dt / (unit_ * 
 StepBound ParticleFluid::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = flowBound(pool, maxSpeed, gravity);
   tightenByViscosity(pool, bound);
+  if (tension_.any()) bound.tighten(tension_.longestStep(), StepLimit::Tension);
   return bound;
 }
 
@@ -116,9 +118,12 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
   predict(context, pool, impulses, stats);
   sortByCell(context, pool);
   meetWalls(context);
+  if (tension_.any()) pullSurface(context, pool, impulses);
+  linkBodies(context);
   solvePressure(context, pool, stats);
   if (overTurned(context, stats)) return;
   finishPositions(context, pool, impulses, stats);
+  if (tension_.any()) stats.tensionWork += tensionWork(context, pool);
   applyViscosity(context, pool, impulses);
   bookCarried(context, pool, impulses);
 }
@@ -216,6 +221,10 @@ void ParticleFluid::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
   walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
+}
+
+void ParticleFluid::linkBodies(const StepContext& context) {
+  const std::size_t n = grid_.size();
   bodies_.begin(context.freeBodies, bodyUnits(context.dt));
   bodies_.link(walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
 }
@@ -483,7 +492,7 @@ void ParticleFluid::resizeScratch(std::size_t n) {
 std::size_t ParticleFluid::memoryBytes() const {
   return 2 * predictedX_.capacity() * sizeof(double) + 16 * shiftX_.capacity() * sizeof(float) + grid_.memoryBytes() +
          walls_.memoryBytes() + coarse_.memoryBytes() + arrangement_.memoryBytes() +
-         wallGain_.capacity() * sizeof(float);
+         wallGain_.capacity() * sizeof(float) + tension_.memoryBytes();
 }
 
 }  // namespace froude

@@ -1,5 +1,5 @@
 // What all particle methods share: prediction, cells, walls, the pressure that is kept, paths to the end of a sub-step,
-// nozzles, viscosity and drag. A method adds how it finds its pressures.
+// nozzles, viscosity, drag and surface tension. A method adds how it finds its pressures.
 #pragma once
 
 #include <froude/base/aligned.h>
@@ -13,6 +13,7 @@
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/pair_loops.h>
+#include <froude/solver/fluid/surface_tension.h>
 #include <froude/solver/fluid/wall_layer.h>
 
 namespace froude {
@@ -85,6 +86,7 @@ class ParticleFluid : public FluidModel {
   CellGrid grid_;
   WallLayer walls_;
   BodyResponse bodies_;
+  SurfaceTension tension_;
   // Scratch of a sub-step, by index; lengths in spacings where not said otherwise.
   AlignedArray<double> predictedX_, predictedY_;  // [m]
   AlignedArray<std::int32_t> latticeX_, latticeY_, nextX_, nextY_;
@@ -105,6 +107,10 @@ class ParticleFluid : public FluidModel {
   void predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);
+  void linkBodies(const StepContext& context);
+  // particle_tension.cpp
+  void pullSurface(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
+  double tensionWork(const StepContext& context, const ParticlePool& pool) const;
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   // particle_viscosity.cpp
   void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;

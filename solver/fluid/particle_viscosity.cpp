@@ -73,7 +73,7 @@ void ParticleFluid::applyViscosity(const StepContext& context, ParticlePool& poo
     }
   });
   const double stiffness = pressureUnit(context.dt) * largestPressure_;
-  const double viscous = def_.viscosity * context.dt / (unit_ * unit_);
+  const double viscous = std::max(def_.viscosity, tension_.viscosity()) * context.dt / (unit_ * unit_);
   const double pairs = pairViscosity_ * context.dt / (unit_ * unit_);
   const ViscosityLoop loop{velocityX_.data(),
                            velocityY_.data(),

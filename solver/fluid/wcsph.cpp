@@ -3,6 +3,7 @@
 #include <bit>
 #include <utility>
 
+#include <froude/base/error.h>
 #include <froude/solver/fluid/lattice.h>
 
 namespace froude {
@@ -37,7 +38,12 @@ float stray(std::uint64_t seed) {
 }  // namespace
 
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
-    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0, kernel::Kind::WendlandC2}) {}
+    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0, kernel::Kind::WendlandC2}) {
+  if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of wcsph; pbf and dfsph have it");
+  if (!(def.compressible.support >= 2.0 && def.compressible.support <= 6.0)) {
+    throw Error("the support of wcsph is 2 to 6 spacings");
+  }
+}
 
 void Wcsph::archive(Archive& a) { a.value("sound speed", soundSpeed_); }
 

@@ -83,7 +83,13 @@ void sortFluid(const scene::Scene& scene, std::vector<Item>& in, std::vector<Ite
   } else {
     out.push_back({"viscosity", "`fluid.viscosity` is 0"});
   }
-  if (def.fluid->surfaceTension == 0.0) out.push_back({"surface tension", "`fluid.surface_tension` is 0"});
+  if (def.fluid->surfaceTension > 0.0) {
+    in.push_back({fmt::format("surface tension {} N, contact angle {:.6g} degrees", def.fluid->surfaceTension,
+                              def.fluid->contactAngle * 180.0 / kPi),
+                  "`fluid.surface_tension` is not 0"});
+  } else {
+    out.push_back({"surface tension", "`fluid.surface_tension` is 0"});
+  }
 }
 
 void sortBullets(const scene::Scene& scene, std::vector<Item>& in, std::vector<Item>& out) {

@@ -3,6 +3,7 @@
 #include <muParser.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 
@@ -25,6 +26,7 @@ struct Compiled {
     if (variables.find('y') != std::string::npos) parser.DefineVar("y", &y);
     if (variables.find('t') != std::string::npos) parser.DefineVar("t", &t);
     parser.DefineConst("pi", 3.14159265358979323846);
+    parser.DefineFun("erf", static_cast<double (*)(double)>(std::erf));  // smooth starts; muParser has none
     parser.SetExpr(text);
   }
   Compiled(const Compiled&) = delete;

@@ -15,8 +15,8 @@ class ExpressionError : public Error {
 };
 
 /// A number that may depend on x, y [m] and t [s]. Copies are cheap and share the text; evaluation is pure and may run
-/// in several threads at once (each keeps its own parser object). Functions of muParser (`^`, sin … in radians) and
-/// `pi`.
+/// in several threads at once (each keeps its own parser object). Functions of muParser (`^`, sin … in radians), `erf`
+/// and `pi`.
 class Expression {
  public:
   /// A constant.

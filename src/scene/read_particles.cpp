@@ -57,14 +57,13 @@ FluidDef readFluidDef(TableReader& fluid) {
   def.density = fluid.number("density", Range::positive(1e12), 1000.0);
   def.viscosity = fluid.number("viscosity", Range::notNegative(1e6), 1.0e-6);
   def.surfaceTension = fluid.number("surface_tension", Range::notNegative(1e6), 0.0);
-  if (def.surfaceTension > 0.0) fluid.fail("surface_tension", "surface tension is not in this version, right is 0");
   def.contactAngle = kDegrees * fluid.number("contact_angle", Range::between(0.0, 180.0), 90.0);
   readFilter(fluid, def.group, def.collidesWith);
   return def;
 }
 
-constexpr std::array<const char*, 6> kCompressibleKeys{"support",           "sound_speed",       "density_diffusion", "artificial_viscosity",
-                                                       "background_pressure", "equation_of_state"};
+constexpr std::array kCompressibleKeys{"support",           "sound_speed",         "density_diffusion", "artificial_viscosity",
+                                       "background_pressure", "equation_of_state"};
 
 void readCompressible(TableReader& model, CompressibleDef& def) {
   def.support = model.number("support", Range::between(2.0, 6.0), def.support);
@@ -93,7 +92,16 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
                         : solver == "explicit" ? ViscositySolver::Explicit
                                                : ViscositySolver::Implicit;
-  if (def.model == "wcsph") readCompressible(model, def.compressible);
+  if (def.model == "wcsph") {
+    readCompressible(model, def.compressible);
+    if (def.surfaceTension > 0.0) {
+      model.fail("fluid", "wcsph has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
+    }
+  } else {
+    for (const char* key : kCompressibleKeys) {
+      if (model.has(key)) model.fail(key, "a key of wcsph alone, right is to leave it out or fluid = \"wcsph\"");
+    }
+  }
   draft.scene.world.timeStep = model.optionalNumber("time_step", Range::positive(1e6));
   draft.timeStepPlace = model.place("time_step");
   if (model.has("spacing")) draft.spacingPlace = model.place("spacing");

@@ -122,6 +122,13 @@ TEST(SceneLoad, an_expression_gives_each_thread_its_own_value) {
   EXPECT_EQ(wrong, std::vector<int>(7, 0));
 }
 
+TEST(SceneLoad, an_expression_knows_the_error_function) {
+  // M. Abramowitz and I.A. Stegun, "Handbook of Mathematical Functions", 1964, Table 7.1.
+  EXPECT_NEAR(scene::Expression("erf(x)", "x").evaluate(0.5, 0.0, 0.0), 0.5204998778, 1e-10);
+  EXPECT_NEAR(scene::Expression("erf(-2*t)", "t").evaluate(0.0, 0.0, 0.5), -0.8427007929, 1e-10);
+  EXPECT_TRUE(scene::Expression("1 + erf(0)", "t").isConstant());
+}
+
 TEST(SceneLoad, copies_go_first_index_fastest_and_turn_each_a_little_further) {
   const scene::Scene s = loadText(kHead +
                                   "[[body]]\nname = \"peg\"\nshape = { regular = { sides = 8, radius = 0.03 } }\n"

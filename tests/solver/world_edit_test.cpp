@@ -171,8 +171,15 @@ TEST(WorldEdit, what_cannot_be_right_is_refused_when_it_comes_in) {
   fluid.fluid->viscosity = -1.0;
   EXPECT_THROW(World{fluid}, Error);
   fluid.fluid->viscosity = 0.0;
+  for (const double tension : {-0.07, kInfinity, std::nan("")}) {
+    fluid.fluid->surfaceTension = tension;
+    EXPECT_THROW(World{fluid}, Error);
+  }
   fluid.fluid->surfaceTension = 0.07;
-  EXPECT_THROW(World{fluid}, Error);
+  for (const double angle : {-0.1, 3.2, std::nan("")}) {
+    fluid.fluid->contactAngle = angle;
+    EXPECT_THROW(World{fluid}, Error);
+  }
   World world(bulletWorld());
   EXPECT_THROW(shoot(world, {1.0, 1.0}, {std::nan(""), 0.0}), Error);
   shoot(world, {1.0, 1.0}, {1.0, 0.0});
