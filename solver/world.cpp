@@ -24,7 +24,9 @@ void checkPeriod(const WorldDef& def) {
   const Vec2 size = def.domain.box.size();
   const double least = 4.0 * supportOf(*def.fluid);
   if ((def.domain.periodicX && size.x() < least) || (def.domain.periodicY && size.y() < least)) {
-    throw Error("a fluid's domain must be at least four kernel radii long (8 spacings; with wcsph 4 times its support) along a periodic axis");
+    throw Error(
+        "a fluid's domain must be at least four kernel radii long (8 spacings; with wcsph 4 times its support) along a "
+        "periodic axis");
   }
 }
 

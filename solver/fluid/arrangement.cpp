@@ -19,7 +19,7 @@ void Arrangement::resize(std::size_t n) {
 }
 
 MomentLoop Arrangement::moments(const WallLayer& walls, float* density, float* squares) {
-  return {walls.any() ? walls.lambda() : nullptr,    density, skewX.data(), skewY.data(), squares,
+  return {walls.any() ? walls.lambda() : nullptr, density, skewX.data(), skewY.data(), squares,
           {xx.data(), xy.data(), yy.data()}};
 }
 

@@ -1,4 +1,5 @@
-// How the particles of a sub-step lie: who is inside, who at a wall or a free surface, and what that makes of gradients.
+// How the particles of a sub-step lie: who is inside, who at a wall or a free surface, and what that makes of
+// gradients.
 #pragma once
 
 #include <cstdint>

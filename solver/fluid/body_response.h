@@ -35,7 +35,8 @@ class BodyResponse {
   /// What the particles see of the walls while no body has moved by the pressures: their λ, or what these gain. Must
   /// stay where it is.
   void startFrom(std::span<const float> field);
-  /// One step towards where the pressures κ, times `share`, bring the bodies; writes the field as the fluid now sees it.
+  /// One step towards where the pressures κ, times `share`, bring the bodies; writes the field as the fluid now sees
+  /// it.
   void follow(const float* kappa, double share = 1.0);
   /// The field by particle.
   const float* answered() const { return any() ? answered_.data() : field_; }

@@ -56,7 +56,8 @@ void Dfsph::prepareSystem(const ParticlePool& pool) {
       // error: more, and a deep fluid bounces. What has room at a surface may be compressed up to its rest density.
       target_[i] = surface ? std::max(0.0f, 1.0f - kLoose - density[i]) : -back * std::max(0.0f, density[i] - 1.0f);
       const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
-      const float x = b.xx[i] * arrangement_.skewX[i] + b.xy[i] * arrangement_.skewY[i], y = b.xy[i] * arrangement_.skewX[i] + b.yy[i] * arrangement_.skewY[i];
+      const float x = b.xx[i] * arrangement_.skewX[i] + b.xy[i] * arrangement_.skewY[i],
+                  y = b.xy[i] * arrangement_.skewX[i] + b.yy[i] * arrangement_.skewY[i];
       const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
       diagonal_[i] = (x + gx) * (x + 2.0f * gx) + (y + gy) * (y + 2.0f * gy) + 0.5f * square * diagonal_[i];
       tense_[i] = open && inside && pressure[i] < 0.0f;

@@ -27,10 +27,10 @@ class Dfsph final : public ParticleFluid {
   void giveBack();
   void evenOut();
 
-  double pace_ = 1.0;  // of the sub-step: its length over the one that the flow asks for, at most 1
-  AlignedArray<std::uint8_t> tense_;                    // 1 where differences of pressure are felt, not sums
-  AlignedArray<float> totalX_, totalY_;                 // displacement in the sub-step
-  AlignedArray<float> least_;                           // lowest κ: none inside, else 0
+  double pace_ = 1.0;                    // of the sub-step: its length over the one that the flow asks for, at most 1
+  AlignedArray<std::uint8_t> tense_;     // 1 where differences of pressure are felt, not sums
+  AlignedArray<float> totalX_, totalY_;  // displacement in the sub-step
+  AlignedArray<float> least_;            // lowest κ: none inside, else 0
 };
 
 }  // namespace froude

@@ -5,8 +5,8 @@
 
 namespace froude {
 
-/// Volume of a particle in kernel units² (a unit is half a support radius), with which a fluid on the square lattice has
-/// density 1. ratio: spacing/unit, in (0, 1]; Blend at 1 gives 1, its own norm (kernel.h). Cost: O(1/ratio²).
+/// Volume of a particle in kernel units² (a unit is half a support radius), with which a fluid on the square lattice
+/// has density 1. ratio: spacing/unit, in (0, 1]; Blend at 1 gives 1, its own norm (kernel.h). Cost: O(1/ratio²).
 double latticeVolume(double ratio, kernel::Kind kind);
 
 /// By how much a wall must stand back, in units, for a row of particles half a spacing from it to find density 1: a

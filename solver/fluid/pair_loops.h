@@ -106,10 +106,11 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
-/// With Wendland's kernel: what displacements u make of densities in an acoustic step, with diffusion: next = ρ' + share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') +
-/// diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ))), ρ' = ρ/ρ0 − 1 and G its gradient, taken from the acceleration
-/// by pressures: G = slope·a. The last term is zero where ρ' is linear (Antuono et al. 2010, eq. 9). Behind a
-/// wall the fluid is its mirror image, as in `force`, whose adjoint this is: no pressure can feed itself.
+/// With Wendland's kernel: what displacements u make of densities in an acoustic step, with diffusion: next = ρ' +
+/// share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') + diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ))), ρ' = ρ/ρ0 − 1 and G
+/// its gradient, taken from the acceleration by pressures: G = slope·a. The last term is zero where ρ' is linear
+/// (Antuono et al. 2010, eq. 9). Behind a wall the fluid is its mirror image, as in `force`, whose adjoint this is: no
+/// pressure can feed itself.
 struct RateLoop {
   const float* ux = nullptr;  // [dx]
   const float* uy = nullptr;
@@ -168,8 +169,9 @@ struct PushLoop {
   float* kappa = nullptr;  // where not null, `pressure` is added to it
 };
 
-/// With Wendland's kernel, as `rate`: displacement by a pressure at present coordinates: shift = −Σ (σᵢκᵢBᵢ + κⱼBⱼ)∇W − 2κᵢ g, also added to u. σ is 1, or −1
-/// for a particle that feels differences of pressure (Sun et al., Comput. Phys. Commun. 224 (2018)).
+/// With Wendland's kernel, as `rate`: displacement by a pressure at present coordinates: shift = −Σ (σᵢκᵢBᵢ + κⱼBⱼ)∇W −
+/// 2κᵢ g, also added to u. σ is 1, or −1 for a particle that feels differences of pressure (Sun et al., Comput. Phys.
+/// Commun. 224 (2018)).
 struct ForceLoop {
   const float* pressure = nullptr;  // κ
   const float* sign = nullptr;      // σ
@@ -198,7 +200,8 @@ struct PairLoops {
   void (*push)(const PairFrame&, const PushLoop&, std::size_t begin, std::size_t end);
   void (*displace)(const PairFrame&, const DisplacementLoop&, std::size_t begin, std::size_t end);
   void (*viscosity)(const PairFrame&, const ViscosityLoop&, std::size_t begin, std::size_t end);
-  /// Returns the sums over the particles of what pairs make of their shifts: momentum, but for rounding 0 where all σ = 1.
+  /// Returns the sums over the particles of what pairs make of their shifts: momentum, but for rounding 0 where all σ
+  /// = 1.
   std::array<double, 2> (*force)(const PairFrame&, const ForceLoop&, std::size_t begin, std::size_t end);
   void (*rate)(const PairFrame&, const RateLoop&, std::size_t begin, std::size_t end);
 };

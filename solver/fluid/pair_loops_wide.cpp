@@ -265,7 +265,8 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
         sums[1] = hn::MulAdd(xy, px, hn::MulAdd(yy, py, sums[1]));
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF moveX = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[0]), moveY = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[1]);
+        VF moveX = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[0]),
+           moveY = hn::Mul(hn::Set(f, 2.0f * WendlandC2::kSlope), sums[1]);
         const auto these = hn::FirstN(f, count);
         totalX = hn::Add(totalX, hn::IfThenElseZero(these, moveX));
         totalY = hn::Add(totalY, hn::IfThenElseZero(these, moveY));
@@ -275,7 +276,8 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
         storeSome(hn::Add(loadSome(loop.ux + i, count), moveX), loop.ux + i, count);
         storeSome(hn::Add(loadSome(loop.uy + i, count), moveY), loop.uy + i, count);
       });
-  return {static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalX))), static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalY)))};
+  return {static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalX))),
+          static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalY)))};
 }
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {

@@ -18,8 +18,8 @@
 
 namespace froude {
 
-/// Lengths of the solve are in units of half a kernel's support radius, which is the spacing dx but for wcsph; pressures
-/// are κ = p·dt²/(ρ·unit²).
+/// Lengths of the solve are in units of half a kernel's support radius, which is the spacing dx but for wcsph;
+/// pressures are κ = p·dt²/(ρ·unit²).
 class ParticleFluid : public FluidModel {
  public:
   double supportRadius() const final;

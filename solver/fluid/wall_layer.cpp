@@ -114,8 +114,8 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   if (drag) std::copy_n(buffer.begin(), n, whole.begin());
   const std::size_t front = recede({buffer.data(), n}, recession_, thick);
   std::array<WallShare, kMaxWallEdges> shares;
-  const std::size_t owners =
-      thick ? integrateSolids({buffer.data(), front}, shares, kernel_) : integrateWalls({buffer.data(), front}, shares, kernel_);
+  const std::size_t owners = thick ? integrateSolids({buffer.data(), front}, shares, kernel_)
+                                   : integrateWalls({buffer.data(), front}, shares, kernel_);
   double pulls = 0.0;
   for (std::size_t k = 0; k < owners; ++k) {
     const WallShare& share = shares[k];

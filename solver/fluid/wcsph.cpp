@@ -10,13 +10,14 @@ namespace froude {
 namespace {
 
 // Measurements: docs/decisions/solver-wcsph.md.
-constexpr double kCourant = 0.2;   // of the support radius a sub-step
-constexpr double kMach = 0.1;      // largest speed that is to be expected, over c
-constexpr double kMostMach = 0.12; // inside the fluid; beyond, c is raised
-constexpr double kAcoustic = 1.0;  // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
-constexpr int kMostSteps = 64;     // acoustic ones a sub-step
-constexpr float kStiffest = 1.2f;  // diagonal of div grad from which a fluid is made softer
-constexpr double kReturn = 1e-3;   // of what densities differ from the sum over particles, taken back in an acoustic step
+constexpr double kCourant = 0.2;    // of the support radius a sub-step
+constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
+constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
+constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
+constexpr int kMostSteps = 64;      // acoustic ones a sub-step
+constexpr float kStiffest = 1.2f;   // diagonal of div grad from which a fluid is made softer
+constexpr double kReturn =
+    1e-3;  // of what densities differ from the sum over particles, taken back in an acoustic step
 constexpr double kMostReturn = 0.1;
 // Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
 // fastest in units, at most kMostWay.
@@ -59,7 +60,8 @@ StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gra
 }
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &wayX_, &wayY_, &share_, &sign_}) {
+  for (AlignedArray<float>* a :
+       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &wayX_, &wayY_, &share_, &sign_}) {
     a->resize(pool.size());
   }
   const bool fresh = soundSpeed_ == 0.0;
@@ -99,7 +101,8 @@ void Wcsph::chooseSoundSpeed(const StepContext& context, const ParticlePool& poo
   double speed = flowSpeed_;
   walls_.forEachLink([&](const WallLink& link) {
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
-    speed = std::max(speed, context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY)).norm());
+    speed =
+        std::max(speed, context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY)).norm());
   });
   if (soundSpeed_ == 0.0) {
     // What falls by the fluid's own extent, or is fast already.
@@ -150,13 +153,14 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
     const float sx = arrangement_.skewX[i], sy = arrangement_.skewY[i];
     const float bx = b.xx[i] * sx + b.xy[i] * sy, by = b.xy[i] * sx + b.yy[i] * sy;
     const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
-    diagonal_[i] = (bx + 2.0f * gx) * (bx + 2.0f * gx) + (by + 2.0f * gy) * (by + 2.0f * gy) + 0.5f * square * volume * volume * diagonal_[i];
+    diagonal_[i] = (bx + 2.0f * gx) * (bx + 2.0f * gx) + (by + 2.0f * gy) * (by + 2.0f * gy) +
+                   0.5f * square * volume * volume * diagonal_[i];
   }
   limitStiffness();
 }
 
-// The pressures that a fluid has which is let go: those that take the divergence out of its acceleration. Without them a
-// tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
+// The pressures that a fluid has which is let go: those that take the divergence out of its acceleration. Without them
+// a tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
 void Wcsph::findStartPressure(const StepContext& context) {
   const std::size_t n = grid_.size();
   const float stiffness = std::exchange(stiffness_, 1.0f), background = std::exchange(background_, 0.0f);
@@ -212,7 +216,8 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
 // Where walls make a corner, pressures push harder and densities gain more: there the fluid is softer, or the acoustic
 // steps of all would have to be shorter. Its pressure is the same at rest.
 void Wcsph::limitStiffness() {
-  for (std::size_t i = 0; i < grid_.size(); ++i) share_[i] = std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
+  for (std::size_t i = 0; i < grid_.size(); ++i)
+    share_[i] = std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
 }
 
 // Tait's exponent is 7.
@@ -377,8 +382,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const {
-  return ParticleFluid::memoryBytes() + 10 * moveX_.capacity() * sizeof(float);
-}
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 10 * moveX_.capacity() * sizeof(float); }
 
 }  // namespace froude

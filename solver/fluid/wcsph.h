@@ -1,9 +1,9 @@
 // Weakly compressible SPH with density diffusion and particle shifting: the fluid is a little elastic, and its pressure
 // follows from its density. No system is solved; the steps are those of sound.
 //
-// Density diffusion: Antuono et al., "Free-surface flows solved by means of SPH schemes with numerical diffusive terms",
-// Comput. Phys. Commun. 181 (2010). Shifting: Sun et al., "The δplus-SPH model", Comput. Methods Appl. Mech. Eng. 315
-// (2017). What differs and why: docs/decisions/solver-wcsph.md.
+// Density diffusion: Antuono et al., "Free-surface flows solved by means of SPH schemes with numerical diffusive
+// terms", Comput. Phys. Commun. 181 (2010). Shifting: Sun et al., "The δplus-SPH model", Comput. Methods Appl. Mech.
+// Eng. 315 (2017). What differs and why: docs/decisions/solver-wcsph.md.
 #pragma once
 
 #include <froude/solver/fluid/particle_fluid.h>
@@ -35,18 +35,18 @@ class Wcsph final : public ParticleFluid {
   void drift();
   void finish(const StepContext& context, ParticlePool& pool, int steps);
 
-  double soundSpeed_ = 0.0;  // c [m/s]; 0 until the first sub-step
-  double flowSpeed_ = 0.0;   // largest where kernels are full [m/s]
-  float stiffness_ = 0.0f;   // (c dt/unit)² of an acoustic step
-  float background_ = 0.0f;  // ρ' that makes the background pressure
-  AlignedArray<float> excess_, nextExcess_;   // ρ/ρ0 − 1
-  AlignedArray<float> moveX_, moveY_;         // velocity, as displacement in an acoustic step
-  AlignedArray<float> fallX_, fallY_;         // gravity's share of that in an acoustic step
-  AlignedArray<float> wayX_, wayY_;           // from where it was predicted
-  AlignedArray<float> sign_;                  // −1 where differences of pressure are felt, else 1
+  double soundSpeed_ = 0.0;                      // c [m/s]; 0 until the first sub-step
+  double flowSpeed_ = 0.0;                       // largest where kernels are full [m/s]
+  float stiffness_ = 0.0f;                       // (c dt/unit)² of an acoustic step
+  float background_ = 0.0f;                      // ρ' that makes the background pressure
+  AlignedArray<float> excess_, nextExcess_;      // ρ/ρ0 − 1
+  AlignedArray<float> moveX_, moveY_;            // velocity, as displacement in an acoustic step
+  AlignedArray<float> fallX_, fallY_;            // gravity's share of that in an acoustic step
+  AlignedArray<float> wayX_, wayY_;              // from where it was predicted
+  AlignedArray<float> sign_;                     // −1 where differences of pressure are felt, else 1
   std::vector<std::array<double, 2>> pairSums_;  // by task
-  Vec2 taken_{0.0, 0.0};                      // by those in tension, of the momentum of all [units in an acoustic step]
-  AlignedArray<float> share_;                 // of a gain of density
+  Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]
+  AlignedArray<float> share_;  // of a gain of density
 };
 
 }  // namespace froude

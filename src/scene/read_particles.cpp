@@ -62,8 +62,8 @@ FluidDef readFluidDef(TableReader& fluid) {
   return def;
 }
 
-constexpr std::array kCompressibleKeys{"support",           "sound_speed",         "density_diffusion", "artificial_viscosity",
-                                       "background_pressure", "equation_of_state"};
+constexpr std::array kCompressibleKeys{
+    "support", "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"};
 
 void readCompressible(TableReader& model, CompressibleDef& def) {
   def.support = model.number("support", Range::between(2.0, 6.0), def.support);
@@ -72,7 +72,7 @@ void readCompressible(TableReader& model, CompressibleDef& def) {
   def.artificialViscosity = model.number("artificial_viscosity", Range::between(0.0, 1.0), 0.0);
   def.backgroundPressure = model.number("background_pressure", Range::notNegative(1e12), 0.0);
   def.equation = model.word("equation_of_state", {"linear", "tait"}, "linear") == "tait" ? EquationOfState::Tait
-                                                                                           : EquationOfState::Linear;
+                                                                                         : EquationOfState::Linear;
 }
 
 void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) {
@@ -95,7 +95,8 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   if (def.model == "wcsph") {
     readCompressible(model, def.compressible);
     if (def.surfaceTension > 0.0) {
-      model.fail("fluid", "wcsph has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
+      model.fail("fluid",
+                 "wcsph has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
     }
   } else {
     for (const char* key : kCompressibleKeys) {
@@ -140,7 +141,9 @@ void readFluid(TableReader& root, Draft& draft) {
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
   TableReader model =
-      tableOrEmpty(root, "model", {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support", "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"});
+      tableOrEmpty(root, "model",
+                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support", "sound_speed",
+                    "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;

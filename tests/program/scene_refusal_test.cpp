@@ -94,9 +94,12 @@ TEST(SceneRefusal, the_domain) {
 TEST(SceneRefusal, the_model_and_the_fluid) {
   expectRefusals({
       {kHead + "[model]\nfluid = \"pfb\"\n", "6:9: model.fluid: is \"pfb\"", "\"pbf\""},
-      {kHead + "[model]\nfluid = \"wcsph\"\n", "6:9: model.fluid: \"wcsph\" is not in this version",
-       "this build has: pbf, dfsph"},
-      {kHead + "[model]\nfluid = \"apic\"\n", "6:9: model.fluid: \"apic\" is not in this version", "pbf"},
+      {kHead + "[model]\nfluid = \"apic\"\n", "6:9: model.fluid: \"apic\" is not in this version",
+       "this build has: pbf, dfsph, wcsph"},
+      {kHead + "[model]\nfluid = \"wcsph\"\nsupport = 1\n", "7:11: model.support: is 1", ""},
+      {kHead + "[model]\nfluid = \"wcsph\"\nequation_of_state = \"ideal\"\n",
+       "7:21: model.equation_of_state: is \"ideal\"", "\"tait\""},
+      {kHead + "[model]\nsound_speed = 10\n", "6:15: model.sound_speed: a key of wcsph alone", "wcsph"},
       {kHead + "[model]\ntime_step = 0.0\n", "6:13: model.time_step: is 0", "above 0"},
       {kHead + "[model]\ntime_step = -1e-3\n", "6:13: model.time_step: is -0.001", "above 0"},
       {kHead + "[model]\nspacing = 0\n", "6:11: model.spacing: is 0", ""},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include <froude/base/random.h>
@@ -108,6 +109,46 @@ TEST(WallIntegral, corners_of_all_angles_agree_with_rays) {
       expectLikeRays(ring(wedge, at), 1e-4);
     }
   }
+}
+
+// Wendland's kernel, from its definition, over the strip or disc behind a flat wall: midpoint rule in two dimensions.
+TEST(WallIntegral, of_wendlands_kernel_a_flat_wall_a_corner_and_a_plate_agree_with_sums_over_the_solid) {
+  auto value = [](double r) {
+    return r < 2.0 ? 7.0 / (4.0 * kPi) * std::pow(1.0 - 0.5 * r, 4) * (1.0 + 2.0 * r) : 0.0;
+  };
+  auto slope = [](double r) { return r < 2.0 ? -35.0 / (4.0 * kPi) * r * std::pow(1.0 - 0.5 * r, 3) : 0.0; };
+  struct Solid {
+    std::vector<WallEdge> edges;
+    std::function<bool(const Vec2&)> inside;
+  };
+  const std::vector<Solid> solids{{{{{5.0, -0.3}, {-5.0, -0.3}, 0}}, [](const Vec2& p) { return p.y() < -0.3; }},
+                                  {{{{5.0, -1.2}, {-5.0, -1.2}, 0}}, [](const Vec2& p) { return p.y() < -1.2; }},
+                                  {ring({{0.0, 0.0}, {0.0, 9.0}, {9.0, 9.0}, {9.0, 0.0}}, {0.4, 0.7}),
+                                   [](const Vec2& p) { return p.x() < -0.4 || p.y() < -0.7; }}};
+  for (const Solid& solid : solids) {
+    Reference sum;
+    constexpr int kSide = 2000;
+    constexpr double kCell = 4.0 / kSide;
+    for (int a = 0; a < kSide; ++a) {
+      for (int b = 0; b < kSide; ++b) {
+        const Vec2 p(-2.0 + (a + 0.5) * kCell, -2.0 + (b + 0.5) * kCell);
+        if (!solid.inside(p)) continue;
+        sum.lambda += value(p.norm()) * kCell * kCell;
+        sum.gradient -= slope(p.norm()) * kCell * kCell * p.normalized();
+      }
+    }
+    std::array<WallShare, kMaxWallEdges> shares;
+    const std::size_t n = integrateWalls(solid.edges, shares, kernel::Kind::WendlandC2);
+    Reference exact;
+    for (std::size_t k = 0; k < n; ++k) {
+      exact.lambda += shares[k].lambda;
+      exact.gradient += shares[k].gradient;
+    }
+    EXPECT_NEAR(exact.lambda, sum.lambda, 1e-3);
+    EXPECT_NEAR(exact.gradient.x(), sum.gradient.x(), 1e-3);
+    EXPECT_NEAR(exact.gradient.y(), sum.gradient.y(), 1e-3);
+  }
+  EXPECT_NEAR(halfPlaneShare(0.0, kernel::Kind::WendlandC2), 0.5, 1e-9);
 }
 
 TEST(WallIntegral, inside_a_corner_both_walls_count_and_no_more) {
