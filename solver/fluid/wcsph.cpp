@@ -70,7 +70,7 @@ void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
   chooseSoundSpeed(context, pool);
   const double wanted = std::ceil(context.dt / acousticStep(flowSpeed_) * (1.0 - 1e-9));
   const int steps = def_.sweeps > 0 ? def_.sweeps : static_cast<int>(std::min(wanted, 2.0 * kMostSteps));
-  start(context, pool, steps);
+  start(context, pool, steps, fresh);
   bodies_.startFrom({wallGain_.data(), pool.size()});
   if (fresh) findStartPressure(context);
   for (int k = 0; k < steps; ++k) {
@@ -115,7 +115,7 @@ void Wcsph::chooseSoundSpeed(const StepContext& context, const ParticlePool& poo
   if (speed > kMostMach * soundSpeed_) soundSpeed_ = speed / kMach;
 }
 
-void Wcsph::start(const StepContext& context, const ParticlePool& pool, int steps) {
+void Wcsph::start(const StepContext& context, const ParticlePool& pool, int steps, bool fresh) {
   const auto x = pool.x(), y = pool.y(), vx = pool.vx(), vy = pool.vy();
   const auto density = pool.column(density_);
   const double dt = context.dt / steps, perUnit = dt / unit_;
@@ -125,7 +125,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   const bool open = arrangement_.hasSurface();
   if (open) background_ = 0.0f;
   taken_ = Vec2(0.0, 0.0);
-  const auto back = static_cast<float>(std::min(kMostReturn, kReturn * steps));
+  const auto back = fresh ? 0.0f : static_cast<float>(std::min(kMostReturn, kReturn * steps));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec2 g = context.gravity.at({x[i], y[i]}, context.time);
@@ -176,6 +176,7 @@ void Wcsph::findStartPressure(const StepContext& context) {
   });
   stiffness_ = stiffness;
   background_ = background;
+  taken_ = Vec2(0.0, 0.0);
   limitStiffness();
 }
 

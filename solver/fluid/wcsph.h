@@ -23,7 +23,7 @@ class Wcsph final : public ParticleFluid {
   void solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) override;
   double acousticStep(double speed) const;
   void chooseSoundSpeed(const StepContext& context, const ParticlePool& pool);
-  void start(const StepContext& context, const ParticlePool& pool, int steps);
+  void start(const StepContext& context, const ParticlePool& pool, int steps, bool fresh);
   void limitStiffness();
   void giveBack();
   void findStartPressure(const StepContext& context);
