@@ -37,7 +37,7 @@ double latticeRecession(double ratio, kernel::Kind kind) {
     const double middle = 0.5 * (low + high);
     (halfPlaneShare(0.5 * ratio + middle, kind) > missing ? low : high) = middle;
   }
-  return 0.5 * (low + high);
+  return std::round(1e7 * 0.5 * (low + high)) / 1e7;
 }
 
 }  // namespace froude

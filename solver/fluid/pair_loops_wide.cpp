@@ -230,7 +230,7 @@ void displace(const PairFrame& frame, const DisplacementLoop& loop, std::size_t 
 template <typename Kernel>
 void viscosityOf(const PairFrame& frame, const ViscosityLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  const VF a = hn::Set(f, loop.a * Kernel::kShape), b = hn::Set(f, loop.b * Kernel::kSlope);
+  const VF a = hn::Set(f, loop.a), b = hn::Set(f, loop.b * (Kernel::kSlope / Kernel::kShape));
   const float* const values[2] = {loop.vx, loop.vy};
   sweepCells<2, 2>(
       frame, begin, end, values,
@@ -240,8 +240,8 @@ void viscosityOf(const PairFrame& frame, const ViscosityLoop& loop, std::size_t 
         sums[1] = hn::MulAdd(weight, hn::Sub(other[1], own[1]), sums[1]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        storeSome(sums[0], loop.changeX + i, count);
-        storeSome(sums[1], loop.changeY + i, count);
+        storeSome(hn::Mul(hn::Set(f, Kernel::kShape), sums[0]), loop.changeX + i, count);
+        storeSome(hn::Mul(hn::Set(f, Kernel::kShape), sums[1]), loop.changeY + i, count);
       });
 }
 
