@@ -5,7 +5,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-#include <froude/solver/fluid/pair_sweep_wide.h>
+#include <froude/solver/fluid/pair_sweep-inl.h>
 
 #if HWY_TARGET != HWY_SCALAR  // scalar is pair_loops_scalar.cpp
 HWY_BEFORE_NAMESPACE();

@@ -7,11 +7,11 @@
 #include <hwy/highway.h>
 
 // A guard that toggles: the targets' passes each need the text once.
-#if defined(FROUDE_PAIR_SWEEP_WIDE_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FROUDE_PAIR_SWEEP_WIDE_H
-#undef FROUDE_PAIR_SWEEP_WIDE_H
+#if defined(FROUDE_PAIR_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FROUDE_PAIR_SWEEP_INL_H
+#undef FROUDE_PAIR_SWEEP_INL_H
 #else
-#define FROUDE_PAIR_SWEEP_WIDE_H
+#define FROUDE_PAIR_SWEEP_INL_H
 #endif
 
 // A lambda of an inner loop, which must become part of the loop.
