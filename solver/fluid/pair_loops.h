@@ -118,6 +118,7 @@ struct RateLoop {
   const float* ax = nullptr;      // displacement by the pressures [dx]
   const float* ay = nullptr;
   Matrices<const float> correction;  // B
+  float volume = 1.0f;               // of a particle, in front of the sums
   float slope = 0.0f;
   float diffusion = 0.0f;
   const float* wallX = nullptr;  // null: no walls near any particle

@@ -266,7 +266,7 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
       const float jump = loop.excess[j] - excess + loop.slope * along;
       sum += WendlandC2::slope(m) * (away - loop.diffusion * jump);
     });
-    float gain = -sum;
+    float gain = -loop.volume * sum;
     if (loop.wallX != nullptr) {
       gain += 2.0f * (loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallShare * loop.wallGain[i]);
     }

@@ -296,7 +296,7 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
         sums[0] = hn::MulAdd(WendlandC2::slope(m), change, sums[0]);
       },
       [&](std::uint32_t i, std::uint32_t count, const VF* sums) FROUDE_INLINE {
-        VF gain = hn::Mul(hn::Set(f, -2.0f * WendlandC2::kSlope), sums[0]);
+        VF gain = hn::Mul(hn::Set(f, -2.0f * WendlandC2::kSlope * loop.volume), sums[0]);
         if (loop.wallX != nullptr) {
           VF wall = hn::Mul(loadSome(loop.wallX + i, count), loadSome(loop.ux + i, count));
           wall = hn::MulAdd(loadSome(loop.wallY + i, count), loadSome(loop.uy + i, count), wall);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <froude/base/error.h>
+#include <froude/base/random.h>
 #include <froude/solver/fluid/lattice.h>
 
 namespace froude {
@@ -16,9 +17,8 @@ constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
 constexpr int kMostSteps = 64;      // acoustic ones a sub-step
 constexpr float kStiffest = 1.2f;   // diagonal of div grad from which a fluid is made softer
-constexpr double kReturn =
-    1e-3;  // of what densities differ from the sum over particles, taken back in an acoustic step
-constexpr double kMostReturn = 0.1;
+// Of what densities differ from the sum over particles, taken back in an acoustic step; and at most in a sub-step.
+constexpr double kReturn = 1e-3, kMostReturn = 0.1;
 // Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
 // fastest in units, at most kMostWay.
 constexpr float kEven = 1.0f, kStray = 0.07f, kMostWay = 0.3f;
@@ -27,13 +27,14 @@ constexpr double kStartSweeps = 40.0, kStartTolerance = 0.02, kDiverged = 1e2;
 constexpr float kStartStep = 0.6f, kLeastStartStep = 0.05f;
 constexpr float kInnerDiagonal = 0.5f;  // half of the largest eigenvalue of div grad inside a fluid
 
-// In [−1, 1), from a particle's handle and the time: the same on any number of threads, straight through or resumed.
-float stray(std::uint64_t seed) {
-  seed += 0x9e3779b97f4a7c15ull;  // splitmix64, Steele et al., OOPSLA 2014
-  seed = (seed ^ (seed >> 30)) * 0xbf58476d1ce4e5b9ull;
-  seed = (seed ^ (seed >> 27)) * 0x94d049bb133111ebull;
-  seed ^= seed >> 31;
-  return static_cast<float>(static_cast<std::int64_t>(seed) >> 40) / 8388608.0f;
+// In [−1, 1)², from a particle's place in the order of the cells and the time: the same on any number of threads,
+// straight through or resumed.
+std::array<float, 2> stray(std::size_t i, std::uint64_t time) {
+  const auto words = philox(
+      {static_cast<std::uint32_t>(i), 0, static_cast<std::uint32_t>(time), static_cast<std::uint32_t>(time >> 32)},
+      {0, 0});
+  auto number = [](std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-23f - 1.0f; };
+  return {number(words[0]), number(words[1])};
 }
 
 }  // namespace
@@ -53,7 +54,8 @@ double Wcsph::acousticStep(double speed) const { return kAcoustic * unit_ / (sou
 StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = ParticleFluid::stepBound(pool, maxSpeed, gravity);
   if (soundSpeed_ == 0.0) return bound;
-  bound.tighten(kMostSteps * acousticStep(flowSpeed_), StepLimit::Acoustic);
+  // The largest speed, not `flowSpeed_`: that one is not part of the state.
+  bound.tighten(kMostSteps * acousticStep(maxSpeed), StepLimit::Acoustic);
   const double alpha = def_.compressible.artificialViscosity;
   if (alpha > 0.0) bound.tighten(unit_ / (alpha * soundSpeed_), StepLimit::Viscosity);
   return bound;
@@ -145,18 +147,31 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
     }
   });
   walls_.forEachFilm([&](std::uint32_t i) { target_[i] = kNever; });
+  for (const Carried& c : carried_) {  // goes its own way, without gravity, whatever others give back
+    const std::uint32_t i = c.particle;
+    fallX_[i] = fallY_[i] = 0.0f;
+    moveX_[i] = static_cast<float>(vx[i] * perUnit);
+    moveY_[i] = static_cast<float>(vy[i] * perUnit);
+    sign_[i] = 1.0f;
+  }
+  findDiagonal();
+  limitStiffness();
+}
+
+// Of div grad, as dfsph's, with the mirror image of the fluid behind walls: (BS + 2g)² + Σ|B∇W|².
+void Wcsph::findDiagonal() {
   const Matrices<const float> b = arrangement_.correction();
   const bool walls = walls_.any();
   const auto volume = static_cast<float>(volume_);
-  for (std::size_t i = 0; i < pool.size(); ++i) {
-    const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
-    const float sx = arrangement_.skewX[i], sy = arrangement_.skewY[i];
-    const float bx = b.xx[i] * sx + b.xy[i] * sy, by = b.xy[i] * sx + b.yy[i] * sy;
-    const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
-    diagonal_[i] = (bx + 2.0f * gx) * (bx + 2.0f * gx) + (by + 2.0f * gy) * (by + 2.0f * gy) +
-                   0.5f * square * volume * volume * diagonal_[i];
-  }
-  limitStiffness();
+  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float gx = walls ? walls_.gradientX()[i] : 0.0f, gy = walls ? walls_.gradientY()[i] : 0.0f;
+      const float sx = arrangement_.skewX[i], sy = arrangement_.skewY[i];
+      const float x = b.xx[i] * sx + b.xy[i] * sy + 2.0f * gx, y = b.xy[i] * sx + b.yy[i] * sy + 2.0f * gy;
+      const float square = b.xx[i] * b.xx[i] + b.yy[i] * b.yy[i] + 2.0f * b.xy[i] * b.xy[i];
+      diagonal_[i] = x * x + y * y + 0.5f * square * volume * volume * diagonal_[i];
+    }
+  });
 }
 
 // The pressures that a fluid has which is let go: those that take the divergence out of its acceleration. Without them
@@ -217,8 +232,11 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
 // Where walls make a corner, pressures push harder and densities gain more: there the fluid is softer, or the acoustic
 // steps of all would have to be shorter. Its pressure is the same at rest.
 void Wcsph::limitStiffness() {
-  for (std::size_t i = 0; i < grid_.size(); ++i)
-    share_[i] = std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
+  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      share_[i] = std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
+    }
+  });
 }
 
 // Tait's exponent is 7.
@@ -272,7 +290,7 @@ void Wcsph::kick(const StepContext& context, int steps) {
     c.spared += steps * Vec2(static_cast<double>(shiftX_[i]), static_cast<double>(shiftY_[i]));
     moveX_[i] -= shiftX_[i];
     moveY_[i] -= shiftY_[i];
-    shiftX_[i] = shiftY_[i] = fallX_[i] = fallY_[i] = 0.0f;
+    shiftX_[i] = shiftY_[i] = 0.0f;
   }
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -286,24 +304,15 @@ void Wcsph::kick(const StepContext& context, int steps) {
 }
 
 void Wcsph::compress(const StepContext& context, const float* ux, const float* uy, double diffusion, double wallShare) {
-  // The matrices are free again: the volume goes with the gradients.
-  const Matrices<const float> b = arrangement_.correction();
-  const auto volume = static_cast<float>(volume_);
-  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      arrangement_.xx[i] = volume * b.xx[i];
-      arrangement_.xy[i] = volume * b.xy[i];
-      arrangement_.yy[i] = volume * b.yy[i];
-    }
-  });
   const RateLoop loop{ux,
                       uy,
                       excess_.data(),
                       shiftX_.data(),
                       shiftY_.data(),
-                      {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()},
+                      arrangement_.correction(),
+                      static_cast<float>(volume_),
                       -1.0f / stiffness_,
-                      static_cast<float>(2.0 * diffusion * volume_) * std::sqrt(stiffness_),
+                      static_cast<float>(2.0 * diffusion) * std::sqrt(stiffness_),
                       walls_.any() ? walls_.gradientX() : nullptr,
                       walls_.gradientY(),
                       bodies_.answered(),
@@ -350,15 +359,12 @@ void Wcsph::finish(const StepContext& context, ParticlePool& pool, int steps) {
       if (!arrangement_.closed(i)) continue;
       const float sx = arrangement_.skewX[i] + (walls_.any() ? walls_.gradientX()[i] : 0.0f);
       const float sy = arrangement_.skewY[i] + (walls_.any() ? walls_.gradientY()[i] : 0.0f);
-      const std::uint64_t seed = moment + 2 * i;
-      shiftX_[i] += astray * stray(seed) - even * sx;
-      shiftY_[i] += astray * stray(seed + 1) - even * sy;
+      const auto [x, y] = stray(i, moment);
+      shiftX_[i] += astray * x - even * sx;
+      shiftY_[i] += astray * y - even * sy;
     }
   });
-  for (const Carried& c : carried_) {
-    shiftX_[c.particle] = wayX_[c.particle];
-    shiftY_[c.particle] = wayY_[c.particle];
-  }
+  for (const Carried& c : carried_) shiftX_[c.particle] = shiftY_[c.particle] = 0.0f;
   laplacianMoment_ = arrangement_.laplacianMoment();
   // Of Monaghan's term in two dimensions (Rep. Prog. Phys. 68 (2005), eq. 4.6), h half the support radius.
   pairViscosity_ = def_.compressible.artificialViscosity * soundSpeed_ * unit_ / 8.0;

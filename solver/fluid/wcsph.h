@@ -24,6 +24,7 @@ class Wcsph final : public ParticleFluid {
   double acousticStep(double speed) const;
   void chooseSoundSpeed(const StepContext& context, const ParticlePool& pool);
   void start(const StepContext& context, const ParticlePool& pool, int steps, bool fresh);
+  void findDiagonal();
   void limitStiffness();
   void giveBack();
   void findStartPressure(const StepContext& context);

@@ -75,7 +75,7 @@ struct Cloud {
   AlignedArray<CellRuns> runs;
 };
 
-constexpr float kSlope = -0.7f, kDiffusion = 0.3f, kWallShare = 0.25f;
+constexpr float kVolume = 0.8f, kSlope = -0.7f, kDiffusion = 0.3f, kWallShare = 0.25f;
 
 struct Outputs {
   AlignedArray<float> shiftX, shiftY, ux, uy, kappa, next, density, skewX, skewY, squares, xx, xy, yy, changeX, changeY;
@@ -97,8 +97,8 @@ Outputs run(const Cloud& c, const PairLoops& loops) {
                            out.shiftX.data(), out.shiftY.data(), out.ux.data(), out.uy.data(), out.kappa.data()},
                           0, end);
   loops.rate(c.frame(),
-             {c.ux.data(), c.uy.data(), c.excess.data(), c.ax.data(), c.ay.data(), matrices, kSlope, kDiffusion,
-              c.wallX.data(), c.wallY.data(), c.gain.data(), kWallShare, c.share.data(), out.next.data()},
+             {c.ux.data(), c.uy.data(), c.excess.data(), c.ax.data(), c.ay.data(), matrices, kVolume, kSlope,
+              kDiffusion, c.wallX.data(), c.wallY.data(), c.gain.data(), kWallShare, c.share.data(), out.next.data()},
              0, end);
   loops.moments(c.frame(),
                 {nullptr,
@@ -133,7 +133,8 @@ TEST(AcousticLoops, the_scalar_loops_equal_sums_over_all_pairs) {
       const Vec2 both = a + Vec2(c.ax[j], c.ay[j]);
       const double jump =
           static_cast<double>(c.excess[j] - c.excess[i]) + 0.5 * static_cast<double>(kSlope) * both.dot(d);
-      gain += (u - Vec2(c.ux[j], c.uy[j])).dot(c.matrix(i) * gradient) - static_cast<double>(kDiffusion) * f * jump;
+      gain += static_cast<double>(kVolume) *
+              ((u - Vec2(c.ux[j], c.uy[j])).dot(c.matrix(i) * gradient) - static_cast<double>(kDiffusion) * f * jump);
       skew += gradient;
       moment -= d * gradient.transpose();
       change += (0.02 * kernel::wendland(q) - 0.01 * f) * static_cast<double>(c.ux[j] - c.ux[i]);
