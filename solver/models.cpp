@@ -73,7 +73,7 @@ std::span<const ModelCard> modelCards() {
        {"a fluid at rest over steps and corners moves at 4 % of sqrt(g depth); volumes wander by a per cent in ten "
         "seconds, more where fewer than 40 spacings are deep",
         "a free fluid in tension clumps and tears: the rotating square patch loses a tenth of its area",
-        "free bodies much lighter than the fluid they displace"},
+        "a fluid that sways is noisy at its floor"},
        {"M. Antuono et al.: Free-surface flows solved by means of SPH schemes with numerical diffusive terms. Comput. "
         "Phys. Commun. 181, 2010",
         "P. Sun et al.: The delta-plus-SPH model. Comput. Methods Appl. Mech. Eng. 315, 2017",
