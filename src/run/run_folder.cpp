@@ -82,6 +82,15 @@ bool isEmptyButForLock(const std::string& folder) {
   return true;
 }
 
+// A run that was killed before its first summary: files of a run and nothing else.
+bool holdsOnlyRunFiles(const std::string& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name != FolderLock::kName && !isRunFile(name) && !(name == "frames" && entry.is_directory())) return false;
+  }
+  return true;
+}
+
 std::string withoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
   return path;
@@ -119,7 +128,7 @@ RunFolder RunFolder::create(const std::string& wanted, const std::string& sceneN
   if (access(path.c_str(), R_OK | X_OK) != 0) throwOutputError(path);
   RunFolder folder(path, false);
   if (isEmptyButForLock(path)) return folder;
-  if (!holdsRun(path)) {
+  if (!holdsRun(path) && !(force && holdsOnlyRunFiles(path))) {
     throw UsageError("-o " + path +
                      ": the folder holds files that are not a run's; name a folder that is absent or empty");
   }

@@ -64,8 +64,7 @@ Session::Session(Scene scene, SessionOptions options) : options_(std::move(optio
   record_ = recordOf(scene_, *world_, options_.command);
 }
 
-Session::Session(RunFolder folder, SessionOptions options)
-    : options_(std::move(options)), folder_(std::move(folder)) {
+Session::Session(RunFolder folder, SessionOptions options) : options_(std::move(options)), folder_(std::move(folder)) {
   const std::unique_ptr<Checkpoint> checkpoint = findCheckpoint(*folder_);
   scene_ = scene::load(folder_->file("scene.toml"));
   scene_.name = checkpoint->record().sceneName;  // pictures without a title carry it

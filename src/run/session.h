@@ -40,7 +40,7 @@ class Session {
   const RunRecord& record() const { return loop_ ? loop_->record() : record_; }
   const std::string& folder() const { return folder_->path(); }
   const SessionOptions& options() const { return options_; }
-  double time() const { return time_; }  // at which it was taken up [s]
+  double time() const { return time_; }                                    // at which it was taken up [s]
   double end() const { return options_.until.value_or(scene_.duration); }  // [s]
 
  private:
