@@ -1,4 +1,4 @@
-// A plane mesh: points, triangles and outline.
+// TriangleMesh: a polygon's solid as triangles of about one size, what a soft body is made of.
 #pragma once
 
 #include <array>
@@ -9,14 +9,11 @@
 
 namespace froude {
 
-/// What a deformable body is made of, at rest and in its own frame. A chain has no triangles; its points follow each
-/// other along it.
+/// Points and triangles of a solid; the outline's own vertices are among the points.
 struct TriangleMesh {
-  std::vector<Vec2> points;                             // [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;  // corners counter-clockwise
-  /// Edges of one triangle each, the triangle to the left (outer outline counter-clockwise, holes clockwise); of a
-  /// chain its links in order.
-  std::vector<std::array<std::uint32_t, 2>> boundary;
+  std::vector<Vec2> points;                             ///< at rest, in the polygon's own frame [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< corners counter-clockwise, numbers of points
+  std::vector<std::array<std::uint32_t, 2>> outline;    ///< edges in order round each ring, the solid on their left
 };
 
 }  // namespace froude
