@@ -140,7 +140,7 @@ enum class SoftModel : std::uint8_t { NeoHookean, StVenantKirchhoff, ShapeMatchi
 struct SoftDef {
   std::string name;
   SoftModel model = SoftModel::NeoHookean;
-  std::shared_ptr<const TriangleMesh> mesh;  // at rest, in the body's own frame [m]
+  std::shared_ptr<const TriangleMesh> mesh;  // at rest, in the own frame; a rope: points along it, no triangles
   Vec2 position{0, 0};                       // world = position + R(angle)·p [m]
   double angle = 0.0;                        // [rad]
   Vec2 velocity{0, 0};                       // [m/s]
