@@ -6,8 +6,7 @@
 
 namespace froude::study {
 
-/// From as many particles on, a run is worth another thread: below, runs side by side are faster (see
-/// docs/decisions/study-shares.md).
+/// From as many particles on, a run is worth another thread: below, runs side by side are faster.
 inline constexpr std::size_t kParticlesPerThread = 50000;
 /// With fewer particles for each, another thread makes a run no faster.
 inline constexpr std::size_t kLeastParticlesPerThread = 2000;

@@ -104,7 +104,7 @@ TEST_F(Batch, what_is_wrong_in_every_run_is_refused_and_nothing_is_written) {
 TEST_F(Batch, a_batch_that_was_stopped_goes_on_and_runs_nothing_twice) {
   writeLong("long.toml", "60.0");
   const Words sweep{"--sweep", "seed=1,2,3", "--set", "output.checkpoint=0.05"};
-  Words words{"batch", "s.toml", "long.toml", "-o", "b"};
+  Words words{"batch", "s.toml", "long.toml", "-o", "b", "--threads", "2"};
   words.insert(words.end(), sweep.begin(), sweep.end());
   {
     Process process(words, home_);
@@ -123,7 +123,7 @@ TEST_F(Batch, a_batch_that_was_stopped_goes_on_and_runs_nothing_twice) {
   // Somebody shortens the rest: --until belongs to the batch, and another one is refused.
   EXPECT_EQ(froude({"batch", "-o", "b", "--resume", "--until", "1"}).code, 2);
   Process process({"batch", "-o", "b", "--resume", "--threads", "3"}, home_);
-  waitFor("b/long_seed=2/checkpoint.h5");
+  waitFor("b/long_seed=3/checkpoint.h5");
   process.signal(SIGTERM);
   EXPECT_EQ(process.wait().code, 143);
   rows = results("b");
