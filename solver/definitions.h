@@ -12,6 +12,7 @@
 #include <froude/base/simd.h>
 #include <froude/base/types.h>
 #include <froude/fields/polygon.h>
+#include <froude/fields/triangle_mesh.h>
 #include <froude/particles/emitter.h>
 
 namespace froude {
@@ -21,7 +22,7 @@ using VectorField = std::function<Vec2(const Vec2& x /* m */, double t /* s */)>
 /// A number that may vary in time. Called from one thread.
 using TimeFunction = std::function<double(double t /* s */)>;
 
-enum class Species { Fluid, Bullet };
+enum class Species { Fluid, Bullet, Soft };
 
 /// What a force callback is told about a particle. `index` is its place in the pool's columns while the callback runs:
 /// columns are read there through a const World.
@@ -131,6 +132,38 @@ struct BulletDef {
   std::uint32_t group = 1, collidesWith = ~0u;
 };
 
+/// NeoHookean, StVenantKirchhoff: elastic triangles. ShapeMatching: drawn to the best fit of the rest shape. Springs:
+/// edges, angles and area. Rope: a chain of points that resists stretching and bending.
+enum class SoftModel : std::uint8_t { NeoHookean, StVenantKirchhoff, ShapeMatching, Springs, Rope };
+
+/// A deformable body. Its particles are the mesh's points, in that order.
+struct SoftDef {
+  std::string name;
+  SoftModel model = SoftModel::NeoHookean;
+  std::shared_ptr<const TriangleMesh> mesh;  // at rest, in the own frame; a rope: points along it, no triangles
+  Vec2 position{0, 0};                       // world = position + R(angle)·p [m]
+  double angle = 0.0;                        // [rad]
+  Vec2 velocity{0, 0};                       // [m/s]
+  double spin = 0.0;                         // about the centre of mass [rad/s]
+  double spacing = 0.02;                     // mean distance of neighbours [m]
+  double thickness = 0.0;                    // of a rope [m], > 0
+  double density = 1000.0;                   // [kg/m²]; a rope's mass per length is density·thickness
+  double young = 1.0e5;                      // E [N/m²], plane strain
+  double poisson = 0.45;                     // ν, 0 ≤ ν < 0.5
+  double damping = 0.0;                      // rate at which strain rates decay [1/s]
+  double friction = 0.3;                     // with a body's: the geometric mean
+  double strainLimit = 0.0;                  // a triangle or link that is stretched by more tears; 0: never
+  double pressure = 0.0;                     // of an inflated body's inside [N/m]
+  std::vector<std::uint32_t> pinned;         // points that stay where they are
+  std::uint32_t group = 1, collidesWith = ~0u;
+};
+
+/// How soft bodies are advanced within a sub-step of the world.
+struct SoftSettings {
+  int substeps = 0;        // per 1/60 s; 0: as the slowest wave's bound asks
+  double tolerance = 0.0;  // relative residual of the constraints that each is iterated to; 0: one sweep each
+};
+
 struct SinkDef {
   std::shared_ptr<const Polygon> shape;  // world coordinates [m]
 };
@@ -153,6 +186,8 @@ struct WorldDef {
   std::optional<double> timeStep;  // the literal sub-step [s]; empty: adaptive
   std::optional<FluidDef> fluid;
   std::optional<BulletDef> bullet;
+  std::vector<SoftDef> soft;
+  SoftSettings softSettings;
   std::vector<BodyDef> bodies;
   std::vector<EmitterDef> emitters;
   std::vector<SinkDef> sinks;
