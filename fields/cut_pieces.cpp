@@ -28,6 +28,7 @@ double snapped(double x) {
 void CutPieces::clear() {
   pieces_.clear();
   crossings_.clear();
+  low_ = high_ = {0, 0};
 }
 
 void CutPieces::place(const CutGrid& grid, const CutOutline& outline) {
@@ -121,7 +122,13 @@ void CutPieces::sumCrossings() {
   std::sort(crossings_.begin(), crossings_.end(),
             [](const CutCrossing& a, const CutCrossing& b) { return a.key < b.key; });
   std::size_t kept = 0;
+  low_ = {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::max()};
+  high_ = {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::min()};
   for (const CutCrossing& crossing : crossings_) {
+    const auto j = static_cast<std::int32_t>(static_cast<std::uint32_t>(crossing.key >> 32) ^ 0x80000000u);
+    const auto i = static_cast<std::int32_t>(static_cast<std::uint32_t>(crossing.key) ^ 0x80000000u);
+    low_ = {std::min(low_[0], i), std::min(low_[1], j)};
+    high_ = {std::max(high_[0], i), std::max(high_[1], j)};
     const bool sameRow = kept > 0 && (crossings_[kept - 1].key >> 32) == (crossing.key >> 32);
     const std::int32_t before = sameRow ? crossings_[kept - 1].winding : 0;
     if (!(sameRow && crossings_[kept - 1].key == crossing.key)) ++kept;
@@ -131,6 +138,7 @@ void CutPieces::sumCrossings() {
 }
 
 std::int32_t CutPieces::windingAt(std::int32_t i, std::int32_t j) const {
+  if (i <= low_[0] || i > high_[0] || j < low_[1] || j > high_[1]) return 0;  // beyond all of them
   const std::uint64_t key = crossingKey(i, j);
   const auto behind = std::lower_bound(crossings_.begin(), crossings_.end(), key,
                                        [](const CutCrossing& c, std::uint64_t k) { return c.key < k; });

@@ -2,6 +2,7 @@
 // cell's corner. Internal.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <froude/fields/cut_cells.h>
@@ -78,6 +79,7 @@ class CutPieces {
 
   std::vector<CutPiece> pieces_;
   std::vector<CutCrossing> crossings_;
+  std::array<std::int32_t, 2> low_{0, 0}, high_{0, 0};  // columns and rows in which there are crossings
   std::vector<Vertex> vertices_;
 };
 
