@@ -2,7 +2,6 @@
 // cell's corner. Internal.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include <froude/fields/cut_cells.h>
@@ -79,7 +78,7 @@ class CutPieces {
 
   std::vector<CutPiece> pieces_;
   std::vector<CutCrossing> crossings_;
-  std::array<std::int32_t, 2> low_{0, 0}, high_{0, 0};  // columns and rows in which there are crossings
+  std::int32_t leftmost_ = 0, lowest_ = 0, highest_ = 0;  // columns and rows of crossings
   std::vector<Vertex> vertices_;
 };
 
