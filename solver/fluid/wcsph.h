@@ -27,6 +27,7 @@ class Wcsph final : public ParticleFluid {
   void findDiagonal();
   void limitStiffness();
   void giveBack();
+  void findTurning(const StepContext& context);
   void findStartPressure(const StepContext& context);
   bool sweepStartPressure(const StepContext& context);
   void takePressures(bool byEquation);
