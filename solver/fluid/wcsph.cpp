@@ -11,7 +11,11 @@ namespace froude {
 namespace {
 
 // Measurements: docs/decisions/solver-wcsph.md.
-constexpr double kCourant = 0.2;    // of the support radius a sub-step
+constexpr double kCourant = 0.2;  // of the support radius a sub-step
+// Walls, gradients and cells stand still in a sub-step: κ of twice the typical and of the highest pressure, from which
+// a row of particles swings against them, and gains by it.
+constexpr double kTypicalStiffness = 0.3, kLargestStiffness = 0.6;
+constexpr float kLone = 0.5f;       // density below which nothing pulls at a particle
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
@@ -45,7 +49,8 @@ double acousticStepAt(const FluidDef& def, double speed) {
 }
 
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
-    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0, kernel::Kind::WendlandC2}) {
+    : ParticleFluid(def, domain, pool,
+                    {kCourant, kTypicalStiffness, kLargestStiffness, 0.0, kernel::Kind::WendlandC2}) {
   if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of wcsph; pbf and dfsph have it");
   if (!(def.compressible.support >= 2.0 && def.compressible.support <= 6.0)) {
     throw Error("the support of wcsph is 2 to 6 spacings");
@@ -145,7 +150,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       latticeY_[i] = lattice::coordinate((y[i] - domain_.box.min.y()) * perSpacing);
       excess_[i] = density[i] > 0.0f ? density[i] - 1.0f : 0.0f;
       if (!arrangement_.atSurface(i)) excess_[i] += back * (nextExcess_[i] - 1.0f - excess_[i]);
-      least_[i] = arrangement_.atSurface(i) ? 0.0f : -kNever;
+      least_[i] = nextExcess_[i] < kLone ? 0.0f : -kNever;
       sign_[i] = open && arrangement_.inside(i) && excess_[i] < 0.0f ? -1.0f : 1.0f;
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
@@ -220,8 +225,7 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
       double part = 0.0;
       for (std::size_t i = begin; i < end; ++i) {
         const float before = nextExcess_[i];
-        float gain = excess_[i] - before;
-        if (arrangement_.atSurface(i)) gain = std::max(gain, -before);
+        const float gain = std::max(least_[i], excess_[i]) - before;
         excess_[i] = before + gain + momentum * (before - last[i]);
         part += static_cast<double>(std::abs(gain));
         last[i] = before;
@@ -252,7 +256,7 @@ void Wcsph::takePressures(bool byEquation) {
   const auto volume = static_cast<float>(volume_);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (arrangement_.atSurface(i)) excess_[i] = std::max(0.0f, excess_[i]);
+      excess_[i] = std::max(least_[i], excess_[i]);
       float kappa = excess_[i];
       if (tait) {
         const float r = 1.0f + kappa, r3 = r * r * r;

@@ -51,7 +51,7 @@ class Wcsph final : public ParticleFluid {
   AlignedArray<float> excess_, nextExcess_;      // ρ/ρ0 − 1
   AlignedArray<float> moveX_, moveY_;            // velocity, as displacement in an acoustic step
   AlignedArray<float> fallX_, fallY_;            // gravity's share of that in an acoustic step
-  AlignedArray<float> least_;                    // ρ' that a particle may have: 0 at a free surface
+  AlignedArray<float> least_;                    // ρ' that a particle may have: 0 for one that is alone
   AlignedArray<float> sign_;                     // −1 where differences of pressure are felt, else 1
   std::vector<std::array<double, 2>> pairSums_;  // by task
   Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]

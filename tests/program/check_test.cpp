@@ -23,7 +23,9 @@ Output check(const std::vector<std::string>& files, bool strict = false, bool js
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Output o;
-  o.code = scene::checkCommand(files, strict, json);
+  std::vector<scene::CheckItem> items;
+  for (const std::string& file : files) items.push_back({file, file, {}});
+  o.code = scene::checkCommand(items, strict, json);
   o.out = ::testing::internal::GetCapturedStdout();
   o.err = ::testing::internal::GetCapturedStderr();
   return o;
