@@ -44,6 +44,11 @@ std::array<float, 2> stray(std::size_t i, std::uint64_t time) {
 
 }  // namespace
 
+double acousticStepAt(const FluidDef& def, double speed) {
+  const double sound = def.compressible.soundSpeed > 0.0 ? def.compressible.soundSpeed : speed / kMach;
+  return kAcoustic * supportOf(def) / kernel::kSupport / (sound + speed);
+}
+
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool,
                     {kCourant, kTypicalStiffness, kLargestStiffness, 0.0, kernel::Kind::WendlandC2}) {
