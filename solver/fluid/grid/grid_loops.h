@@ -35,7 +35,37 @@ struct TileParent {
   std::uint32_t place = 0;  // of the coarse cell over the fine cell (0, 0)
 };
 
+/// What a level's matrix is made from, and where it goes.
+struct GridAssembly {
+  const TileLinks* links = nullptr;
+  const float* ax = nullptr;
+  const float* ay = nullptr;
+  const float* ground = nullptr;
+  float* ar = nullptr;
+  float* diagonal = nullptr;
+  float* inverse = nullptr;
+};
+
+/// What the next level's matrix is made of: of faces the mean of two, of grounds `share` of the sum of four.
+struct GridCoarsening {
+  const float* ax = nullptr;
+  const float* ay = nullptr;
+  const float* ground = nullptr;
+  const TileParent* parents = nullptr;
+  float share = 1.0f;
+  float* coarseX = nullptr;
+  float* coarseY = nullptr;
+  float* coarseGround = nullptr;
+};
+
 struct GridLoops {
+  /// The couplings to the right, the diagonal and its inverse; sums[t] = Σ couplings.
+  void (*assemble)(const GridAssembly&, double* sums, std::size_t begin, std::size_t end);
+  void (*coarsen)(const GridCoarsening&, std::size_t begin, std::size_t end);
+  /// bits[16 t + j]: bit i where the value of cell (i, j) of tile t is > 0.
+  void (*positive)(const float* values, std::uint16_t* bits, std::size_t begin, std::size_t end);
+  /// x = 0 where there is no unknown.
+  void (*clean)(const GridOperator&, float* x, std::size_t begin, std::size_t end);
   /// q = A x; sums[t] = Σ x·q.
   void (*apply)(const GridOperator&, const float* x, float* q, double* sums, std::size_t begin, std::size_t end);
   /// r = b − A x.

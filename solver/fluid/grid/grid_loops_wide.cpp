@@ -81,6 +81,111 @@ HWY_INLINE void clear(V* sums) {
   for (std::size_t c = 0; c < kChunks; ++c) sums[c] = hn::Zero(F());
 }
 
+// Sums of neighbouring lanes of a row of 16, stored as 8.
+HWY_INLINE void storePairs(const V* row, float* to) {
+  const F f;
+  if constexpr (kChunks == 1) {
+    const hn::Half<F> half;
+    const V even = hn::ConcatEven(f, row[0], row[0]), odd = hn::ConcatOdd(f, row[0], row[0]);
+    hn::StoreU(hn::LowerHalf(half, hn::Add(even, odd)), half, to);
+  } else {
+    for (std::size_t c = 0; c < kChunks; c += 2) {
+      const V even = hn::ConcatEven(f, row[c + 1], row[c]), odd = hn::ConcatOdd(f, row[c + 1], row[c]);
+      hn::StoreU(hn::Add(even, odd), f, to + c / 2 * kLanes);
+    }
+  }
+}
+
+// Every second lane of a row of 16, stored as 8.
+HWY_INLINE void storeEven(const V* row, float* to) {
+  const F f;
+  if constexpr (kChunks == 1) {
+    const hn::Half<F> half;
+    hn::StoreU(hn::LowerHalf(half, hn::ConcatEven(f, row[0], row[0])), half, to);
+  } else {
+    for (std::size_t c = 0; c < kChunks; c += 2) {
+      hn::StoreU(hn::ConcatEven(f, row[c + 1], row[c]), f, to + c / 2 * kLanes);
+    }
+  }
+}
+
+void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_t end) {
+  const F f;
+  GridOperator links;
+  links.links = a.links;
+  const V one = hn::Set(f, 1.0f), zero = hn::Zero(f);
+  for (std::size_t t = begin; t < end; ++t) {
+    const TileView tile(links, t);
+    V sum[kChunks];
+    clear(sum);
+    for (std::int32_t j = 0; j < 16; ++j) {
+      const bool within = j < tile.link.rows;
+      for (std::size_t c = 0; c < kChunks; ++c) {
+        const std::size_t at = tile.row(j) + c * kLanes;
+        if (!within) {
+          for (float* out : {a.ar, a.diagonal, a.inverse}) hn::Store(zero, f, out + at);
+          continue;
+        }
+        const V lane = hn::Iota(f, static_cast<float>(c * kLanes)),
+                last = hn::Set(f, static_cast<float>(tile.link.lane));
+        const V beyond = hn::Set(f, a.ax[tile.link.right + static_cast<std::size_t>(16 * j)]);
+        V right = hn::IfThenElse(tile.last[c], beyond, hn::LoadU(f, a.ax + at + 1));
+        right = hn::IfThenElseZero(hn::Le(lane, last), right);
+        hn::Store(right, f, a.ar + at);
+        const V upright = hn::Add(hn::Load(f, a.ay + at), hn::Load(f, a.ay + tile.above(j) + c * kLanes));
+        const V joined = hn::Add(hn::Add(hn::Load(f, a.ax + at), right), upright);
+        sum[c] = hn::Add(sum[c], joined);
+        const V diagonal = hn::Add(joined, hn::Load(f, a.ground + at));
+        hn::Store(diagonal, f, a.diagonal + at);
+        const M known = hn::Gt(diagonal, zero);
+        hn::Store(hn::IfThenElseZero(known, hn::Div(one, hn::IfThenElse(known, diagonal, one))), f, a.inverse + at);
+      }
+    }
+    sums[t] = total(sum);
+  }
+}
+
+void coarsen(const GridCoarsening& a, std::size_t begin, std::size_t end) {
+  const F f;
+  const V half = hn::Set(f, 0.5f), share = hn::Set(f, a.share);
+  for (std::size_t t = begin; t < end; ++t) {
+    for (std::size_t j = 0; j < 8; ++j) {
+      V x[kChunks], y[kChunks], ground[kChunks];
+      for (std::size_t c = 0; c < kChunks; ++c) {
+        const std::size_t at = t * 256 + 32 * j + c * kLanes;
+        x[c] = hn::Mul(half, hn::Add(hn::Load(f, a.ax + at), hn::Load(f, a.ax + at + 16)));
+        y[c] = hn::Mul(half, hn::Load(f, a.ay + at));
+        ground[c] = hn::Mul(share, hn::Add(hn::Load(f, a.ground + at), hn::Load(f, a.ground + at + 16)));
+      }
+      const std::size_t to = a.parents[t].place + 16 * j;
+      storeEven(x, a.coarseX + to);
+      storePairs(y, a.coarseY + to);
+      storePairs(ground, a.coarseGround + to);
+    }
+  }
+}
+
+void positive(const float* values, std::uint16_t* bits, std::size_t begin, std::size_t end) {
+  const F f;
+  for (std::size_t row = 16 * begin; row < 16 * end; ++row) {
+    std::uint32_t word = 0;
+    for (std::size_t c = 0; c < kChunks; ++c) {
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(f, hn::Gt(hn::Load(f, values + 16 * row + c * kLanes), hn::Zero(f)), bytes);
+      word |= (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8) << (c * kLanes);
+    }
+    bits[row] = static_cast<std::uint16_t>(word);
+  }
+}
+
+void clean(const GridOperator& a, float* x, std::size_t begin, std::size_t end) {
+  const F f;
+  for (std::size_t k = begin * 256; k < end * 256; k += kLanes) {
+    const M known = hn::Gt(hn::Load(f, a.inverse + k), hn::Zero(f));
+    hn::Store(hn::IfThenElseZero(known, hn::Load(f, x + k)), f, x + k);
+  }
+}
+
 void apply(const GridOperator& a, const float* x, float* q, double* sums, std::size_t begin, std::size_t end) {
   const F f;
   for (std::size_t t = begin; t < end; ++t) {
@@ -155,21 +260,6 @@ void start(const GridOperator& a, const float* r, float weight, float* out, doub
   }
 }
 
-// Sums of neighbouring lanes of a row of 16, stored as 8.
-HWY_INLINE void storePairs(const V* row, float* to) {
-  const F f;
-  if constexpr (kChunks == 1) {
-    const hn::Half<F> half;
-    const V even = hn::ConcatEven(f, row[0], row[0]), odd = hn::ConcatOdd(f, row[0], row[0]);
-    hn::StoreU(hn::LowerHalf(half, hn::Add(even, odd)), half, to);
-  } else {
-    for (std::size_t c = 0; c < kChunks; c += 2) {
-      const V even = hn::ConcatEven(f, row[c + 1], row[c]), odd = hn::ConcatOdd(f, row[c + 1], row[c]);
-      hn::StoreU(hn::Add(even, odd), f, to + c / 2 * kLanes);
-    }
-  }
-}
-
 void restrictResidual(const GridOperator& a, const float* r, const float* x, const TileParent* parents, float* coarse,
                       std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
@@ -235,7 +325,8 @@ void direct(const float* z, float share, float* p, std::size_t begin, std::size_
 }  // namespace
 
 const GridLoops& wideGridLoops() {
-  static constexpr GridLoops kLoops{apply, residual, smooth, start, restrictResidual, prolong, advance, direct};
+  static constexpr GridLoops kLoops{assemble, coarsen, positive,         clean,   apply,   residual,
+                                    smooth,   start,   restrictResidual, prolong, advance, direct};
   return kLoops;
 }
 
