@@ -6,9 +6,14 @@
 // Eng. 315 (2017). What differs and why: docs/decisions/solver-wcsph.md.
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
 namespace froude {
+
+/// The acoustic step [s] where the fastest moves at `speed` > 0 [m/s] and sound at ten times that, or as defined. For
+/// predictions.
+FROUDE_API double acousticStepAt(const FluidDef& def, double speed);
 
 /// A sub-step is one set of cells and walls for a number of acoustic steps, each symplectic: velocities by the
 /// pressures, densities by these velocities, positions. The column "density" is what was integrated, not a sum.
@@ -27,6 +32,7 @@ class Wcsph final : public ParticleFluid {
   void findDiagonal();
   void limitStiffness();
   void giveBack();
+  void findTurning(const StepContext& context);
   void findStartPressure(const StepContext& context);
   bool sweepStartPressure(const StepContext& context);
   void takePressures(bool byEquation);

@@ -2,6 +2,7 @@
 #include <froude/solver/fluid/grid/pressure_system.h>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <cstring>
@@ -57,6 +58,7 @@ TEST(PressureSystem, agrees_with_a_direct_factorisation_in_tanks_with_surfaces_a
 }
 
 TEST(PressureSystem, gives_the_same_bits_on_any_number_of_threads) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 8);
   for (const Tank tank : {Tank::Full, Tank::Discs}) {
     const PressureScene scene(tank, 200);
     const Solution one = solved(scene, 1e-4f);

@@ -142,6 +142,9 @@ TEST(Wcsph, a_square_that_turns_stays_whole) {
   for (const Vec2& p : points) turning.emplace_back(p.y(), -p.x());
   world.addFluid(points, turning);
   const double angular = world.totals().angular;
+  runTo(world, 0.01);
+  EXPECT_NEAR(world.pressureAt({0.0, 0.0}), -0.1473427 * 1000.0,
+              0.05 * 147.3427);  // ρ ω² L², series of Poisson's equation
   runTo(world, 1.5);
   EXPECT_NEAR(world.totals().angular, angular, 0.02 * std::abs(angular));
   const ParticlePool& pool = *std::as_const(world).fluid();
