@@ -17,6 +17,25 @@ constexpr double kUntangle = 0.02;         // of the way to the rest shape in a 
 constexpr int kMostSweeps = 50;            // of a part
 constexpr std::size_t kColorBlock = 1024;  // elements of a colour that one thread takes at once
 
+// About the centre of mass.
+struct Spin {
+  Vec2 center{0, 0};
+  double angular = 0.0, inertia = 0.0;
+};
+
+Spin spinOf(const SoftBody& b, const double* x, const double* y, const double* vx, const double* vy) {
+  Spin s;
+  for (std::size_t k = 0; k < b.points(); ++k) {
+    s.center += b.mass[k] / b.totalMass * Vec2(x[k], y[k]);
+  }
+  for (std::size_t k = 0; k < b.points(); ++k) {
+    const Vec2 arm = Vec2(x[k], y[k]) - s.center;
+    s.inertia += b.mass[k] * arm.squaredNorm();
+    s.angular += b.mass[k] * cross(arm, Vec2(vx[k], vy[k]));
+  }
+  return s;
+}
+
 template <typename Loop>
 void forEachColor(const StrainElements& elements, Loop&& loop) {
   for (std::size_t c = 0; c + 1 < elements.colors.size(); ++c) {
@@ -304,6 +323,7 @@ void SoftBodies::finish(const StepContext& context, const Part& part, std::size_
   const SoftBody& b = body(i);
   const std::size_t o = offset(i), end = o + b.points();
   const double dt = part.dt, time = context.time + part.begin * context.dt, rate = 1.0 / dt;
+  const Spin before = b.tangled ? spinOf(b, &fromX_[o], &fromY_[o], &vx_[o], &vy_[o]) : Spin();
   for (std::size_t k = o; k < end; ++k) {
     vx_[k] = rate * (x_[k] - fromX_[k]);
     vy_[k] = rate * (y_[k] - fromY_[k]);
@@ -319,6 +339,13 @@ void SoftBodies::finish(const StepContext& context, const Part& part, std::size_
   }
   if (b.tangled) {
     damp(i, 0.0);
+    // Large corrections one after the other turn the body; it is to spin as it did.
+    const Spin now = spinOf(b, &x_[o], &y_[o], &vx_[o], &vy_[o]);
+    const double change = b.anyPinned || now.inertia == 0.0 ? 0.0 : (before.angular - now.angular) / now.inertia;
+    for (std::size_t k = o; k < end; ++k) {
+      vx_[k] -= change * (y_[k] - now.center.y());
+      vy_[k] += change * (x_[k] - now.center.x());
+    }
   } else if (b.def.damping > 0.0) {
     damp(i, std::exp(-b.def.damping * dt));
   }

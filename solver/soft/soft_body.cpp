@@ -153,8 +153,8 @@ bool SoftBody::isTangled(const double* x, const double* y) const {
     const Vec2 a(x[t[0]], y[t[0]]), b(x[t[1]], y[t[1]]), c(x[t[2]], y[t[2]]);
     const double area = cross(Vec2(b - a), Vec2(c - a));
     if (!(area > 0.0)) return true;
-    // Edges' squares over the area: √3·4 of the equilateral, large for slivers.
-    far = far || (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm() > 10.0 * area;
+    // Edges' squares over twice the area: 3.5 of the equilateral, 5.8 where six go round a point twice.
+    far = far || (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm() > 5.0 * area;
   }
   if (!far) return false;
   around_.assign(points(), 0.0);
@@ -165,7 +165,7 @@ bool SoftBody::isTangled(const double* x, const double* y) const {
     add(t[1], c - b, a - b);
     add(t[2], a - c, b - c);
   }
-  return std::any_of(around_.begin(), around_.end(), [](double sum) { return sum > 3.0 * kPi; });
+  return std::any_of(around_.begin(), around_.end(), [](double sum) { return sum > 2.1 * kPi; });
 }
 
 }  // namespace froude

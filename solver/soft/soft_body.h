@@ -16,8 +16,8 @@ struct SoftBody {
   /// Throws Error for a definition that cannot work.
   explicit SoftBody(SoftDef definition);
 
-  /// Is a triangle inside out, or does the mesh go round a point twice? No energy leads out of the latter. x, y: of the
-  /// body's points. Cost: the triangles; angles where one is far from its shape.
+  /// Is a triangle inside out, or does the mesh overlap itself around a point? No energy leads out of the latter. x, y:
+  /// of the body's points. Cost: the triangles; angles where one is far from its shape.
   bool isTangled(const double* x, const double* y) const;
   /// Edges of the triangle whose piece of strain gave way.
   int tornEdges(std::size_t triangle) const;
