@@ -69,7 +69,7 @@ struct Sample {
     return {links.data(), ax.data(), ar.data(), ay.data(), diagonal.data(), inverse.data()};
   }
   TileGrid grid, coarse;
-  std::vector<TileLinks> links;
+  mutable std::vector<TileLinks> links;
   std::vector<TileParent> parents;
   Field ax, ay, ground, ar, diagonal, inverse, x, r;
 };
@@ -126,7 +126,7 @@ struct Results {
     loops.prolong(a, restricted, s.parents.data(), copyOf(s.x), 1, end);
     float *kappa = copyOf(s.x), *r = copyOf(s.r), *z = field();
     loops.advance(a, 0.37f, s.r.data(), s.x.data(), kappa, r, 0.6f, z, sum(), 1, end);
-    loops.direct(s.r.data(), 0.3f, copyOf(s.x), 1, end);
+    loops.direct(a, s.r.data(), 0.3f, copyOf(s.x), 1, end);
     loops.clean(a, copyOf(s.x), 1, end);
     bits.resize(16 * end);
     loops.positive(s.ax.data(), bits.data(), 0, end);

@@ -166,9 +166,9 @@ float ClosedRegions::removeMeans(float* field) const {
   sums_.clear();
   sums_.resize(sizes_.size());
   for (const Piece& piece : pieces_) {
-    double sum = 0.0;
-    for (std::uint32_t k = 0; k < piece.length; ++k) sum += static_cast<double>(field[piece.place + k]);
-    sums_[piece.region] += sum;
+    float sum = 0.0f;  // of at most 16
+    for (std::uint32_t k = 0; k < piece.length; ++k) sum += field[piece.place + k];
+    sums_[piece.region] += static_cast<double>(sum);
   }
   double most = 0.0;
   for (std::size_t r = 0; r < sizes_.size(); ++r) {

@@ -20,7 +20,7 @@ float neighbours(const GridOperator& a, const float* x, std::size_t t, std::int3
 template <typename Body>
 void eachCell(const GridOperator& a, std::size_t begin, std::size_t end, Body&& body) {
   for (std::size_t t = begin; t < end; ++t) {
-    for (std::int32_t j = 0; j < a.links[t].rows; ++j) {
+    for (std::int32_t j = a.links[t].first; j < a.links[t].end; ++j) {
       for (std::int32_t i = 0; i <= a.links[t].lane; ++i) body(t, i, j, t * 256 + static_cast<std::size_t>(16 * j + i));
     }
   }
@@ -32,7 +32,8 @@ void clearSums(double* sums, std::size_t begin, std::size_t end) {
 
 void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
-    const TileLinks& link = a.links[t];
+    TileLinks& link = a.links[t];
+    link.first = link.end = 0;
     sums[t] = 0.0;
     for (std::int32_t j = 0; j < 16; ++j) {
       for (std::int32_t i = 0; i < 16; ++i) {
@@ -48,6 +49,10 @@ void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_
         sums[t] += static_cast<double>(joined);
         a.diagonal[at] = joined + a.ground[at];
         a.inverse[at] = a.diagonal[at] > 0.0f ? 1.0f / a.diagonal[at] : 0.0f;
+        if (a.inverse[at] > 0.0f) {
+          if (link.end == 0) link.first = j;
+          link.end = j + 1;
+        }
       }
     }
   }
@@ -114,7 +119,7 @@ void restrictResidual(const GridOperator& a, const float* r, const float* x, con
                       std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
     float* to = coarse + parents[t].place;
-    for (std::size_t j = 0; j < 8; ++j) std::fill(to + 16 * j, to + 16 * j + 8, 0.0f);
+    for (std::int32_t j = a.links[t].first / 2; 2 * j < a.links[t].end; ++j) std::fill_n(to + 16 * j, 8, 0.0f);
   }
   eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
     const auto place = parents[t].place + static_cast<std::size_t>(16 * (j / 2) + i / 2);
@@ -140,8 +145,9 @@ void advance(const GridOperator& a, float step, const float* p, const float* q, 
   });
 }
 
-void direct(const float* z, float share, float* p, std::size_t begin, std::size_t end) {
-  for (std::size_t k = begin * 256; k < end * 256; ++k) p[k] = z[k] + share * p[k];
+void direct(const GridOperator& a, const float* z, float share, float* p, std::size_t begin, std::size_t end) {
+  eachCell(a, begin, end,
+           [&](std::size_t, std::int32_t, std::int32_t, std::size_t at) { p[at] = z[at] + share * p[at]; });
 }
 
 }  // namespace

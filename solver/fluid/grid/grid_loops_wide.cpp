@@ -116,9 +116,12 @@ void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_
   const V one = hn::Set(f, 1.0f), zero = hn::Zero(f);
   for (std::size_t t = begin; t < end; ++t) {
     const TileView tile(links, t);
+    TileLinks& rows = a.links[t];
+    rows.first = rows.end = 0;
     V sum[kChunks];
     clear(sum);
     for (std::int32_t j = 0; j < 16; ++j) {
+      V most = zero;
       const bool within = j < tile.link.rows;
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = tile.row(j) + c * kLanes;
@@ -138,8 +141,12 @@ void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_
         const V diagonal = hn::Add(joined, hn::Load(f, a.ground + at));
         hn::Store(diagonal, f, a.diagonal + at);
         const M known = hn::Gt(diagonal, zero);
+        most = hn::Max(most, diagonal);
         hn::Store(hn::IfThenElseZero(known, hn::Div(one, hn::IfThenElse(known, diagonal, one))), f, a.inverse + at);
       }
+      if (hn::AllFalse(f, hn::Gt(most, zero))) continue;
+      if (rows.end == 0) rows.first = j;
+      rows.end = j + 1;
     }
     sums[t] = total(sum);
   }
@@ -192,7 +199,7 @@ void apply(const GridOperator& a, const float* x, float* q, double* sums, std::s
     const TileView tile(a, t);
     V sum[kChunks];
     clear(sum);
-    for (std::int32_t j = 0; j < tile.link.rows; ++j) {
+    for (std::int32_t j = tile.link.first; j < tile.link.end; ++j) {
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = tile.row(j) + c * kLanes;
         const V own = hn::Load(f, x + at);
@@ -209,7 +216,7 @@ void residual(const GridOperator& a, const float* b, const float* x, float* r, s
   const F f;
   for (std::size_t t = begin; t < end; ++t) {
     const TileView tile(a, t);
-    for (std::int32_t j = 0; j < tile.link.rows; ++j) {
+    for (std::int32_t j = tile.link.first; j < tile.link.end; ++j) {
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = tile.row(j) + c * kLanes;
         const M known = hn::Gt(hn::Load(f, a.inverse + at), hn::Zero(f));
@@ -227,7 +234,7 @@ void smooth(const GridOperator& a, const float* r, const float* x, float weight,
     const TileView tile(a, t);
     V sum[kChunks];
     clear(sum);
-    for (std::int32_t j = 0; j < tile.link.rows; ++j) {
+    for (std::int32_t j = tile.link.first; j < tile.link.end; ++j) {
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = tile.row(j) + c * kLanes;
         const V own = hn::Load(f, r + at);
@@ -248,9 +255,9 @@ void start(const GridOperator& a, const float* r, float weight, float* out, doub
   for (std::size_t t = begin; t < end; ++t) {
     V most[kChunks];
     clear(most);
-    for (std::size_t k = 0; k < 256; k += 16) {
+    for (std::int32_t j = a.links[t].first; j < a.links[t].end; ++j) {
       for (std::size_t c = 0; c < kChunks; ++c) {
-        const std::size_t at = t * 256 + k + c * kLanes;
+        const std::size_t at = t * 256 + static_cast<std::size_t>(16 * j) + c * kLanes;
         const V own = hn::Load(f, r + at);
         hn::Store(hn::Mul(hn::Mul(w, hn::Load(f, a.inverse + at)), own), f, out + at);
         most[c] = hn::Max(most[c], hn::Abs(own));
@@ -264,10 +271,10 @@ void restrictResidual(const GridOperator& a, const float* r, const float* x, con
                       std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
     const TileView tile(a, t);
-    for (std::int32_t j = 0; j < 16; j += 2) {
+    for (std::int32_t j = tile.link.first & ~1; j < tile.link.end; j += 2) {
       V sum[kChunks];
       for (std::size_t c = 0; c < kChunks; ++c) {
-        sum[c] = j < tile.link.rows ? rest(a, tile, r, x, j, c) : hn::Zero(F());
+        sum[c] = rest(a, tile, r, x, j, c);
         if (j + 1 < tile.link.rows) sum[c] = hn::Add(sum[c], rest(a, tile, r, x, j + 1, c));
       }
       storePairs(sum, coarse + parents[t].place + 8 * j);
@@ -281,7 +288,7 @@ void prolong(const GridOperator& a, const float* coarse, const TileParent* paren
   const hn::RebindToSigned<F> whole;
   const auto twice = hn::IndicesFromVec(f, hn::ShiftRight<1>(hn::Iota(whole, 0)));
   for (std::size_t t = begin; t < end; ++t) {
-    for (std::size_t j = 0; j < 16; ++j) {
+    for (auto j = static_cast<std::size_t>(a.links[t].first); j < static_cast<std::size_t>(a.links[t].end); ++j) {
       const float* from = coarse + parents[t].place + 16 * (j / 2);
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = t * 256 + 16 * j + c * kLanes;
@@ -300,9 +307,9 @@ void advance(const GridOperator& a, float step, const float* p, const float* q, 
   for (std::size_t t = begin; t < end; ++t) {
     V most[kChunks];
     clear(most);
-    for (std::size_t k = 0; k < 256; k += 16) {
+    for (std::int32_t j = a.links[t].first; j < a.links[t].end; ++j) {
       for (std::size_t c = 0; c < kChunks; ++c) {
-        const std::size_t at = t * 256 + k + c * kLanes;
+        const std::size_t at = t * 256 + static_cast<std::size_t>(16 * j) + c * kLanes;
         hn::Store(hn::MulAdd(along, hn::Load(f, p + at), hn::Load(f, kappa + at)), f, kappa + at);
         const V left = hn::NegMulAdd(along, hn::Load(f, q + at), hn::Load(f, r + at));
         hn::Store(left, f, r + at);
@@ -314,11 +321,15 @@ void advance(const GridOperator& a, float step, const float* p, const float* q, 
   }
 }
 
-void direct(const float* z, float share, float* p, std::size_t begin, std::size_t end) {
+void direct(const GridOperator& a, const float* z, float share, float* p, std::size_t begin, std::size_t end) {
   const F f;
   const V keep = hn::Set(f, share);
-  for (std::size_t k = begin * 256; k < end * 256; k += kLanes) {
-    hn::Store(hn::MulAdd(keep, hn::Load(f, p + k), hn::Load(f, z + k)), f, p + k);
+  for (std::size_t t = begin; t < end; ++t) {
+    const auto first = t * 256 + static_cast<std::size_t>(16 * a.links[t].first);
+    const auto last = t * 256 + static_cast<std::size_t>(16 * a.links[t].end);
+    for (std::size_t k = first; k < last; k += kLanes) {
+      hn::Store(hn::MulAdd(keep, hn::Load(f, p + k), hn::Load(f, z + k)), f, p + k);
+    }
   }
 }
 

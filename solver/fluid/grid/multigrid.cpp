@@ -114,11 +114,18 @@ void Multigrid::addEdges() {
     level.diagonal[k] = coefficients_->ground[k];
     invert(k);
   }
+  const auto add = [&](std::size_t k, float coefficient) {
+    level.diagonal[k] += coefficient;
+    invert(k);
+    if (k >= level.grid->values() || !(level.inverse[k] > 0.0f)) return;
+    TileLinks& link = level.links[k / TileGrid::kCells];  // whose rows may have had no other unknown
+    const auto row = static_cast<std::int32_t>(k % TileGrid::kCells / 16);
+    link.first = link.end == 0 ? row : std::min(link.first, row);
+    link.end = std::max(link.end, row + 1);
+  };
   for (const PressureEdge& edge : coefficients_->edges) {
-    level.diagonal[edge.a] += edge.coefficient;
-    level.diagonal[edge.b] += edge.coefficient;
-    invert(edge.a);
-    invert(edge.b);
+    add(edge.a, edge.coefficient);
+    add(edge.b, edge.coefficient);
     level.coupled = true;
   }
 }

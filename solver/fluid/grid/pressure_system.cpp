@@ -170,8 +170,9 @@ PressureReport PressureSystem::Data::iterate(Crew& crew, float* kappa, const Lim
     const float* z = levels.cycle(crew, r.data(), product);
     const auto share = static_cast<float>(report.iterations == 0 ? 0.0 : product / before);
     before = product;
-    crew.stage(grid->size(), kTileBlock,
-               [&](std::size_t begin, std::size_t end) { loops->direct(z, share, p.data(), begin + 1, end + 1); });
+    crew.stage(grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+      loops->direct(levels.finest().matrix, z, share, p.data(), begin + 1, end + 1);
+    });
     for (std::size_t k = grid->values(); k < r.size(); ++k) p[k] = z[k] + share * p[k];
     const double curvature = apply(crew);
     if (!(curvature > 0.0) || !std::isfinite(product)) break;
