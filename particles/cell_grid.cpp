@@ -77,8 +77,6 @@ void CellGrid::findCells(std::span<const double> x, std::span<const double> y) {
   });
 }
 
-std::size_t CellGrid::memoryBytes() const {
-  return sizeof(std::uint32_t) * cell_.capacity() + sort_.memoryBytes();
-}
+std::size_t CellGrid::memoryBytes() const { return sizeof(std::uint32_t) * cell_.capacity() + sort_.memoryBytes(); }
 
 }  // namespace froude
