@@ -101,7 +101,7 @@ enum class EquationOfState : std::uint8_t { Linear, Tait };
 
 /// Keys of the weakly compressible model alone.
 struct CompressibleDef {
-  double support = 4.0;              // radius of a kernel, in spacings, 2 to 6
+  double support = 3.0;              // radius of a kernel, in spacings, 2 to 6
   double soundSpeed = 0.0;           // c [m/s]; 0: ten times the largest speed that is to be expected
   double densityDiffusion = 0.2;     // δ
   double artificialViscosity = 0.0;  // α (Monaghan): a kinematic viscosity of α·c·(support radius)/16
@@ -160,8 +160,8 @@ struct SoftDef {
 
 /// How soft bodies are advanced within a sub-step of the world.
 struct SoftSettings {
-  int substeps = 0;        // per 1/60 s; 0: as the slowest wave's bound asks
-  double tolerance = 0.0;  // relative residual of the constraints that each is iterated to; 0: one sweep each
+  int substeps = 0;        // per 1/60 s, at least; more where the fastest wave asks for them
+  double tolerance = 0.0;  // each is swept until its multipliers change by less of themselves; 0: one sweep
 };
 
 struct SinkDef {

@@ -2,23 +2,39 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
 
 #include <froude/base/parallel.h>
 
 namespace froude {
 namespace {
 
-constexpr std::size_t kTileBlock = 8;    // tiles a task
-constexpr std::size_t kMostLevels = 28;  // coordinates of cells have 31 bits
+constexpr std::size_t kTileBlock = 8;     // tiles a task
+constexpr std::size_t kSharedTiles = 32;  // fewer are one task: sooner done than shared
+constexpr std::size_t kMostLevels = 28;   // coordinates of cells have 31 bits
+// Of what ties four cells to κ = 0, the share that ties their coarse cell: ½ keeps the distance of a straight surface
+// in coarse cells, 1 in fine ones.
+constexpr float kGroundShare = 0.7f;
 
-// Weights of the sweeps: reciprocals of the roots of Chebyshev's polynomial of degree 2 over those eigenvalues of D⁻¹A,
-// [1/2, 2], that cells of twice the size cannot show.
+// Weights of the sweeps: reciprocals of the roots of Chebyshev's polynomial over those eigenvalues of D⁻¹A, [low, 2],
+// that the next level cannot show. Of degree 2 over [1/2, 2] on the finest; below, where cells are few, of degree 4
+// over [1/4, 2].
 constexpr float kRoot = 0.75f * 0.70710678f;
-constexpr std::array<float, 2> kWeights{1.0f / (1.25f + kRoot), 1.0f / (1.25f - kRoot)};
+constexpr std::array<float, 2> kFine{1.0f / (1.25f + kRoot), 1.0f / (1.25f - kRoot)};
+constexpr float kOuter = 0.875f * 0.92387953f, kInner = 0.875f * 0.38268343f;
+constexpr std::array<float, 4> kCoarse{1.0f / (1.125f + kOuter), 1.0f / (1.125f - kInner), 1.0f / (1.125f + kInner),
+                                       1.0f / (1.125f - kOuter)};
+std::span<const float> weightsOf(std::size_t level) {
+  if (level == 0) return kFine;
+  return kCoarse;
+}
 
 template <typename Body>
 void overTiles(Crew& crew, const GridLevel& level, Body&& body) {
-  crew.stage(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) { body(begin + 1, end + 1); });
+  const std::size_t count = level.grid->size();
+  crew.stage(count, count < kSharedTiles ? count : kTileBlock,
+             [&](std::size_t begin, std::size_t end) { body(begin + 1, end + 1); });
 }
 
 // Added in the order of the tiles: the same bits on any number of threads.
@@ -45,7 +61,7 @@ void linkTiles(GridLevel& level) {
 
 }  // namespace
 
-float Multigrid::firstWeight() const { return used_ > 1 ? kWeights[0] : 1.0f; }
+float Multigrid::firstWeight(std::size_t level) const { return level + 1 < used_ ? weightsOf(level)[0] : 1.0f; }
 
 void Multigrid::build(const TileGrid& grid, const PressureCoefficients& coefficients) {
   coefficients_ = &coefficients;
@@ -68,49 +84,50 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
   linkTiles(level);
   const bool finest = &level == &levels_[0];
   const std::size_t places = finest ? ground.size() : level.grid->values();
-  for (AlignedArray<float>* a : {&level.ar, &level.r, &level.one, &level.two}) {
+  for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
     a->clear();
     a->resize(places);
   }
-  level.diagonal.resize(places);
-  level.inverse.resize(places);
+  for (AlignedArray<float>* a : {&level.ar, &level.diagonal, &level.inverse}) {
+    a->resize(places);
+    std::fill_n(a->data(), TileGrid::kCells, 0.0f);
+  }
   level.sums.resize(level.tiles());
-  std::fill_n(level.diagonal.data(), TileGrid::kCells, 0.0f);
-  std::fill_n(level.inverse.data(), TileGrid::kCells, 0.0f);
+  const GridAssembly parts{level.links.data(),    ax.data(),           ay.data(), ground.data(), level.ar.data(),
+                           level.diagonal.data(), level.inverse.data()};
   parallelFor(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin + 1; t < end + 1; ++t) {
-      const TileLinks& link = level.links[t];
-      float coupled = 0.0f;
-      for (std::int32_t j = 0; j < 16; ++j) {
-        const std::size_t row = t * TileGrid::kCells + static_cast<std::size_t>(16 * j);
-        const std::size_t above = j == link.rows - 1 ? link.up : (j == 15 ? 0 : row + 16);
-        float* ar = level.ar.data() + row;
-        for (std::int32_t i = 0; i < link.lane; ++i) ar[i] = ax[row + static_cast<std::size_t>(i) + 1];
-        if (j < link.rows) ar[link.lane] = ax[link.right + static_cast<std::size_t>(16 * j)];
-        const float* au = ay.data() + above;
-        for (std::size_t i = 0; i < 16; ++i) {
-          const float joined = (ax[row + i] + ar[i]) + (ay[row + i] + au[i]);
-          coupled += joined;
-          level.diagonal[row + i] = joined + ground[row + i];
-        }
-      }
-      level.sums[t] = static_cast<double>(coupled);
-    }
+    loops_->assemble(parts, level.sums.data(), begin + 1, end + 1);
   });
   level.coupled = sumOf(level) > 0.0;
-  if (finest) {
-    for (std::size_t k = level.grid->values(); k < places; ++k) level.diagonal[k] = ground[k];
-    for (const PressureEdge& edge : coefficients_->edges) {
-      level.diagonal[edge.a] += edge.coefficient;
-      level.diagonal[edge.b] += edge.coefficient;
-      level.coupled = true;
-    }
-  }
-  for (std::size_t k = TileGrid::kCells; k < places; ++k) {
-    level.inverse[k] = level.diagonal[k] > 0.0f ? 1.0f / level.diagonal[k] : 0.0f;
-  }
+  if (finest) addEdges();
   level.matrix = {level.links.data(),    ax.data(),           level.ar.data(), ay.data(),
                   level.diagonal.data(), level.inverse.data()};
+}
+
+// Into the finest level's diagonal.
+void Multigrid::addEdges() {
+  GridLevel& level = levels_[0];
+  const auto invert = [&](std::size_t k) {
+    level.inverse[k] = level.diagonal[k] > 0.0f ? 1.0f / level.diagonal[k] : 0.0f;
+  };
+  for (std::size_t k = level.grid->values(); k < level.diagonal.size(); ++k) {
+    level.diagonal[k] = coefficients_->ground[k];
+    invert(k);
+  }
+  const auto add = [&](std::size_t k, float coefficient) {
+    level.diagonal[k] += coefficient;
+    invert(k);
+    if (k >= level.grid->values() || !(level.inverse[k] > 0.0f)) return;
+    TileLinks& link = level.links[k / TileGrid::kCells];  // whose rows may have had no other unknown
+    const auto row = static_cast<std::int32_t>(k % TileGrid::kCells / 16);
+    link.first = link.end == 0 ? row : std::min(link.first, row);
+    link.end = std::max(link.end, row + 1);
+  };
+  for (const PressureEdge& edge : coefficients_->edges) {
+    add(edge.a, edge.coefficient);
+    add(edge.b, edge.coefficient);
+    level.coupled = true;
+  }
 }
 
 void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
@@ -124,24 +141,19 @@ void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
   coarse.grid = &coarse.own;
   for (AlignedArray<float>* a : {&coarse.ax, &coarse.ay, &coarse.ground}) coarse.own.clear(*a);
   fine.parents.resize(fine.tiles());
-  const float *ax = fine.matrix.ax, *ay = fine.matrix.ay;
+  for (std::size_t t = 1; t < fine.tiles(); ++t) {
+    const TileIndex at = grid.tile(t).at;
+    fine.parents[t].place = coarse.own.find(at.x >> 1, at.y >> 1) * static_cast<std::uint32_t>(TileGrid::kCells) +
+                            static_cast<std::uint32_t>((at.y & 1) * 128 + (at.x & 1) * 8);
+  }
   const float* ground = &fine == &levels_[0] ? coefficients_->ground.data() : fine.ground.data();
-  parallelFor(grid.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin + 1; t < end + 1; ++t) {
-      const TileIndex at = grid.tile(t).at;
-      const std::size_t corner = coarse.own.find(at.x >> 1, at.y >> 1) * TileGrid::kCells +
-                                 static_cast<std::size_t>((at.y & 1) * 128 + (at.x & 1) * 8);
-      fine.parents[t].place = static_cast<std::uint32_t>(corner);
-      for (std::size_t j = 0; j < 8; ++j) {
-        for (std::size_t i = 0; i < 8; ++i) {
-          const std::size_t k = t * TileGrid::kCells + 32 * j + 2 * i, to = corner + 16 * j + i;
-          coarse.ax[to] = period.x == 1 ? 0.0f : 0.5f * (ax[k] + ax[k + 16]);
-          coarse.ay[to] = period.y == 1 ? 0.0f : 0.5f * (ay[k] + ay[k + 1]);
-          coarse.ground[to] = (ground[k] + ground[k + 1]) + (ground[k + 16] + ground[k + 17]);
-        }
-      }
-    }
-  });
+  const GridCoarsening parts{fine.matrix.ax, fine.matrix.ay,   ground,           fine.parents.data(),
+                             kGroundShare,   coarse.ax.data(), coarse.ay.data(), coarse.ground.data()};
+  parallelFor(grid.size(), kTileBlock,
+              [&](std::size_t begin, std::size_t end) { loops_->coarsen(parts, begin + 1, end + 1); });
+  // What is its own neighbour is coupled to nothing.
+  if (period.x == 1) coarse.own.clear(coarse.ax);
+  if (period.y == 1) coarse.own.clear(coarse.ay);
 }
 
 // An extra unknown is corrected with the cell of the grid to which it is coupled most, or with that of a neighbour.
@@ -179,10 +191,6 @@ void Multigrid::joinExtras(GridLevel& coarse) const {
   const std::size_t base = fine.grid->values();
   const auto cellOf = [&](std::size_t place) {
     return place < base ? place : static_cast<std::size_t>(anchors_[place - base]);
-  };
-  const auto parentOf = [&](std::size_t cell) {
-    const std::size_t within = cell % TileGrid::kCells;
-    return fine.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
   };
   for (std::size_t e = 0; e < anchors_.size(); ++e) {
     if (anchors_[e] != 0) coarse.ground[parentOf(anchors_[e])] += coefficients_->ground[base + e];
@@ -258,60 +266,73 @@ double Multigrid::smooth(Crew& crew, GridLevel& level, const float* r, const flo
 
 const float* Multigrid::cycle(Crew& crew, const float* r, double& product) { return visit(crew, 0, r, &product); }
 
-// The first sweep's result is in level.one; what is returned is in level.two.
+// The first sweep's result is in level.one.
 const float* Multigrid::visit(Crew& crew, std::size_t k, const float* r, double* product) {
   GridLevel& level = levels_[k];
   float *one = level.one.data(), *two = level.two.data();
-  if (k + 1 == used_) {
-    overTiles(crew, level,
-              [&](std::size_t b, std::size_t e) { loops_->start(level.matrix, r, 1.0f, two, nullptr, b, e); });
+  if (k + 1 == used_) {  // nothing is coupled: the sweep with weight 1 has solved it
     if (product != nullptr) {
       *product = 0.0;
       for (std::size_t i = 0; i < level.inverse.size(); ++i) {
-        two[i] = level.inverse[i] * r[i];
-        *product += static_cast<double>(r[i]) * static_cast<double>(two[i]);
+        *product += static_cast<double>(r[i]) * static_cast<double>(one[i]);
       }
     }
-    return two;
+    return one;
   }
-  GridLevel& coarse = levels_[k + 1];
-  const auto [first, second] = kWeights;
-  smooth(crew, level, r, one, second, two, false);
+  const std::span<const float> weights = weightsOf(k);
+  for (std::size_t i = 1; i < weights.size(); ++i) {
+    smooth(crew, level, r, one, weights[i], two, false);
+    std::swap(one, two);
+  }
+  correct(crew, k, r, one);
+  for (std::size_t i = weights.size(); i-- > 0;) {
+    const double sum = smooth(crew, level, r, one, weights[i], two, i == 0 && product != nullptr);
+    if (i == 0 && product != nullptr) *product = sum;
+    std::swap(one, two);
+  }
+  return one;
+}
+
+// Adds to x what the coarser levels make of its residual.
+void Multigrid::correct(Crew& crew, std::size_t k, const float* r, float* x) {
+  GridLevel &level = levels_[k], &coarse = levels_[k + 1];
   overTiles(crew, level, [&](std::size_t b, std::size_t e) {
-    loops_->restrictResidual(level.matrix, r, two, level.parents.data(), coarse.r.data(), b, e);
+    loops_->restrictResidual(level.matrix, r, x, level.parents.data(), coarse.r.data(), b, e);
   });
-  const std::size_t base = level.grid->values();
-  const auto parentOf = [&](std::size_t cell) {
-    const std::size_t within = cell % TileGrid::kCells;
-    return level.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
-  };
-  if (k == 0) {
-    const auto give = [&](std::size_t place, float value) {
-      const std::size_t cell = place < base ? place : anchors_[place - base];
-      if (cell != 0) coarse.r[parentOf(cell)] += value;
-    };
-    for (std::size_t e = base; e < base + extra(); ++e) give(e, r[e] - level.diagonal[e] * two[e]);
-    for (const PressureEdge& edge : coefficients_->edges) {
-      give(edge.a, edge.coefficient * two[edge.b]);
-      give(edge.b, edge.coefficient * two[edge.a]);
-    }
-  }
+  if (k == 0) restrictExtras(r, x);
   overTiles(crew, coarse, [&](std::size_t b, std::size_t e) {
-    loops_->start(coarse.matrix, coarse.r.data(), first, coarse.one.data(), nullptr, b, e);
+    loops_->start(coarse.matrix, coarse.r.data(), firstWeight(k + 1), coarse.one.data(), nullptr, b, e);
   });
   const float* correction = visit(crew, k + 1, coarse.r.data(), nullptr);
   overTiles(crew, level, [&](std::size_t b, std::size_t e) {
-    loops_->prolong(level.matrix, correction, level.parents.data(), two, b, e);
+    loops_->prolong(level.matrix, correction, level.parents.data(), x, b, e);
   });
-  if (k == 0) {
-    for (std::size_t e = 0; e < extra(); ++e) {
-      if (anchors_[e] != 0 && level.inverse[base + e] > 0.0f) two[base + e] += correction[parentOf(anchors_[e])];
-    }
+  if (k > 0) return;
+  for (std::size_t e = 0; e < anchors_.size(); ++e) {
+    const std::size_t place = level.grid->values() + e;
+    if (anchors_[e] != 0 && level.inverse[place] > 0.0f) x[place] += correction[parentOf(anchors_[e])];
   }
-  smooth(crew, level, r, two, second, one, false);
-  const double sum = smooth(crew, level, r, one, first, two, product != nullptr);
-  if (product != nullptr) *product = sum;
-  return two;
+}
+
+// What the edges add to the residual of the cells, and what the extra unknowns have of it, goes to the second level.
+void Multigrid::restrictExtras(const float* r, const float* x) {
+  const GridLevel& level = levels_[0];
+  const std::size_t base = level.grid->values();
+  const auto give = [&](std::size_t place, float value) {
+    const std::size_t cell = place < base ? place : anchors_[place - base];
+    if (cell != 0) levels_[1].r[parentOf(cell)] += value;
+  };
+  for (std::size_t e = base; e < base + anchors_.size(); ++e) give(e, r[e] - level.diagonal[e] * x[e]);
+  for (const PressureEdge& edge : coefficients_->edges) {
+    give(edge.a, edge.coefficient * x[edge.b]);
+    give(edge.b, edge.coefficient * x[edge.a]);
+  }
+}
+
+// The place in the second level of a cell of the finest.
+std::size_t Multigrid::parentOf(std::size_t cell) const {
+  const std::size_t within = cell % TileGrid::kCells;
+  return levels_[0].parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
 }
 
 std::size_t Multigrid::memoryBytes() const {
