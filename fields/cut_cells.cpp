@@ -214,11 +214,13 @@ void CutCells::Data::addWallPieces() {
     const auto last = static_cast<std::int32_t>(std::ceil(high / grid.size)) + kBeyond;
     const std::int32_t begin = period > 0 ? 0 : std::max(first, covered[sideways ? 1 : 0]);
     const std::int32_t end = period > 0 ? period - 1 : std::min(last, covered[sideways ? 3 : 2]);
+    const std::int32_t cell = lines[side].cell;
+    if (cell < covered[sideways ? 0 : 1] || cell > covered[sideways ? 2 : 3]) continue;
     const double at = lines[side].at;
     for (std::int32_t k = begin; k <= end; ++k) {
       CutPiece piece;
       piece.outline = side;
-      piece.key = sideways ? detail::cutKey(lines[side].cell, k) : detail::cutKey(k, lines[side].cell);
+      piece.key = sideways ? detail::cutKey(cell, k) : detail::cutKey(k, cell);
       // The solid is on the left of the way.
       const bool forwards = side == 0 || side == 3;
       const double from = forwards ? 0.0 : 1.0, to = 1.0 - from;

@@ -33,8 +33,10 @@ void CutList::build(const CutGrid& grid, std::span<const CutSource> sources) {
   edges.clear();
   for (const CutSource& source : sources) addCell(source);
   indexTiles();
+  std::size_t tile = 0;
   for (std::uint32_t c = 0; c < cells.size(); ++c) {
-    if (cells[c].partCount > 0) joinCell(c, sources);
+    while (tiles_[tile].key != cutTile(sources[c].key)) ++tile;
+    if (cells[c].partCount > 0) joinCell(c, tile, sources);
   }
 }
 
@@ -90,7 +92,7 @@ std::int32_t CutList::find(std::int32_t i, std::int32_t j) const {
   return tile < 0 ? -1 : tiles_[static_cast<std::size_t>(tile)].cell[key & 255u];
 }
 
-void CutList::joinCell(std::uint32_t c, std::span<const CutSource> sources) {
+void CutList::joinCell(std::uint32_t c, std::size_t tile, std::span<const CutSource> sources) {
   CutCell& cell = cells[c];
   pairs_.clear();
   std::array<std::int32_t, 4> beyond{};
@@ -99,7 +101,8 @@ void CutList::joinCell(std::uint32_t c, std::span<const CutSource> sources) {
     const std::int32_t dy = side == CutSide::Bottom ? -1 : side == CutSide::Top ? 1 : 0;
     const std::int32_t i = wrapped(cell.i + dx, grid_.periodX), j = wrapped(cell.j + dy, grid_.periodY);
     const auto s = static_cast<std::size_t>(side);
-    beyond[s] = find(i, j);
+    const std::uint64_t key = cutKey(i, j);
+    beyond[s] = cutTile(key) == tiles_[tile].key ? tiles_[tile].cell[key & 255u] : find(i, j);
     pairSide(c, side, beyond[s], sources);
   }
   for (std::uint32_t p = 0; p < cell.partCount; ++p) {

@@ -43,7 +43,7 @@ class CutList {
   void addCell(const CutSource& source);
   void indexTiles();
   std::int32_t tileOf(std::uint64_t key) const;
-  void joinCell(std::uint32_t cell, std::span<const CutSource> sources);
+  void joinCell(std::uint32_t cell, std::size_t tile, std::span<const CutSource> sources);
   void pairSide(std::uint32_t cell, CutSide side, std::int32_t beyond, std::span<const CutSource> sources);
   void addPair(const Pair& pair);
   void addEdge(const CutCell& cell, const Pair& pair, bool listedBeyond);

@@ -4,8 +4,8 @@ namespace froude {
 
 std::string_view name(StepLimit limit) {
   static constexpr std::array<std::string_view, static_cast<std::size_t>(StepLimit::kCount)> kNames{
-      "literal", "courant", "acceleration", "pressure", "viscosity", "acoustic", "surface tension",
-      "spin",    "wall",    "body",         "bullet",   "requested", "undone"};
+      "literal", "courant", "acceleration", "pressure", "viscosity", "acoustic",  "surface tension",
+      "spin",    "wall",    "body",         "bullet",   "soft",      "requested", "undone"};
   return kNames[static_cast<std::size_t>(limit)];
 }
 

@@ -24,6 +24,7 @@ enum class StepLimit : int {
   Wall,          // a moving polygon's travel against the support radius
   Body,          // a free body's travel against its own thickness
   Bullet,        // a bullet's sub-step
+  Soft,          // a soft body's travel against its spacing
   Requested,     // the caller asked for less
   Undone,        // halved after a bad step
   kCount

@@ -138,6 +138,7 @@ struct StepStats {
   std::uint64_t wallHits = 0;
   std::uint64_t leaks = 0;
   std::uint64_t crushed = 0;
+  std::uint64_t softParts = 0;  // parts that the sub-step was divided into for soft bodies
 };
 
 }  // namespace froude

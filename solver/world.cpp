@@ -101,7 +101,9 @@ World::Impl::Impl(const WorldDef& definition)
   }
 }
 
-World::World(const WorldDef& def) : impl_(std::make_unique<Impl>(def)) {}
+World::World(const WorldDef& def) : impl_(std::make_unique<Impl>(def)) {
+  for (const SoftDef& soft : def.soft) addSoft(soft);
+}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -116,26 +118,24 @@ double World::bulletMass() const { return impl_->ballistic ? impl_->ballistic->m
 
 Totals World::totals(std::optional<Species> species) const {
   Totals all;
-  auto add = [&](const ParticlePool* pool, double mass) {
-    if (pool == nullptr) return;
-    const Totals t = impl_->totalsOf(*pool, mass);
+  auto addTotals = [&](const Totals& t) {
     all.count += t.count;
     all.mass += t.mass;
     all.kinetic += t.kinetic;
     all.potential += t.potential;
+    all.strain += t.strain;
     all.momentum += t.momentum;
     all.angular += t.angular;
     all.maxSpeed = std::max(all.maxSpeed, t.maxSpeed);
   };
+  auto add = [&](const ParticlePool* pool, double mass) {
+    if (pool == nullptr) return;
+    addTotals(impl_->totalsOf(*pool, mass));
+  };
   if (!species || *species == Species::Fluid) add(impl_->fluid.get(), fluidMass());
   if (!species || *species == Species::Bullet) add(impl_->bullets.get(), bulletMass());
-  if (species) return all;
-  const Totals b = impl_->bodyTotals();
-  all.mass += b.mass;
-  all.kinetic += b.kinetic;
-  all.potential += b.potential;
-  all.momentum += b.momentum;
-  all.angular += b.angular;
+  if (impl_->soft != nullptr && (!species || *species == Species::Soft)) addTotals(impl_->softTotals());
+  if (!species) addTotals(impl_->bodyTotals());
   return all;
 }
 

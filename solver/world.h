@@ -28,6 +28,17 @@ struct BodyState {
   bool asleep = false;  // a free body that rests, with all that it touches
 };
 
+/// State of a soft body.
+struct SoftState {
+  double mass = 0.0;     // [kg/m]
+  double area = 0.0;     // of its triangles [m²]
+  double kinetic = 0.0;  // [J/m]
+  double strain = 0.0;   // elastic energy [J/m]
+  Vec2 center{0, 0};     // of mass [m]
+  Vec2 momentum{0, 0};   // [kg/s]
+  std::size_t torn = 0;  // triangles or links that gave way
+};
+
 /// Sums over particles of one species, or over all particles and free bodies, at the present time. Count and largest
 /// speed are of particles alone.
 struct Totals {
@@ -35,6 +46,7 @@ struct Totals {
   double mass = 0.0;       // [kg/m]
   double kinetic = 0.0;    // [J/m]
   double potential = 0.0;  // from the lowest point of the domain, constant gravity only [J/m]
+  double strain = 0.0;     // elastic energy of soft bodies [J/m]
   Vec2 momentum{0, 0};     // [kg/s]
   double angular = 0.0;    // about the world's origin
   double maxSpeed = 0.0;   // [m/s]
@@ -111,6 +123,25 @@ class FROUDE_API World {
   void setBodyVelocity(BodyId id, const Vec2& velocity, double spin);
   /// The velocity and spin that bring it to this pose in `duration` [s] > 0; it keeps them until told otherwise.
   void steerBody(BodyId id, const Vec2& position, double angle, double duration);
+
+  // ---- soft bodies
+
+  /// Appends a soft body; returns its index. A state is loaded into a world that has the same ones. Error for a
+  /// definition that cannot work, or a point outside the domain or inside a polygon that it collides with; points that
+  /// are pinned may be inside. Cost: sorting its edges, a distance query a point.
+  std::size_t addSoft(const SoftDef& def);
+  std::size_t softCount() const;
+  const SoftDef& softDefinition(std::size_t index) const;
+  /// Pool index of its first particle; that of the mesh's point k is k later, as long as the body is there.
+  std::size_t softFirst(std::size_t index) const;
+  SoftState softState(std::size_t index) const;
+  /// By triangle of its mesh, by link of a rope: the largest |principal stretch − 1|; NaN where it is torn. The
+  /// vector's memory is reused.
+  void softStrain(std::size_t index, std::vector<double>& values) const;
+  /// The particles of all soft bodies, never sorted; null when there are none. Columns besides x, y, vx, vy: "mass"
+  /// (double, [kg/m]), "body" (uint32, its index).
+  const ParticlePool* soft() const;
+  ParticlePool* soft();
 
   std::size_t bodyCount() const;
   bool isAlive(BodyId id) const;

@@ -46,6 +46,20 @@ Totals World::Impl::bodyTotals() const {
   return t;
 }
 
+Totals World::Impl::softTotals() const {
+  Totals t;
+  const SoftSums sums = soft->sums();
+  t.count = soft->pool().size();
+  t.mass = sums.mass;
+  t.kinetic = sums.kinetic;
+  t.strain = sums.strain;
+  t.potential = sums.mass > 0.0 ? sums.mass * potentialOf(sums.massCenter / sums.mass) : 0.0;
+  t.momentum = sums.momentum;
+  t.angular = sums.angular;
+  t.maxSpeed = sums.maxSpeed;
+  return t;
+}
+
 Balance World::Impl::balance() const {
   Balance b;
   auto add = [&](const ParticlePool& pool, double mass) {
@@ -58,12 +72,21 @@ Balance World::Impl::balance() const {
   };
   if (fluid != nullptr) add(*fluid, fluidModel->particleMass());
   if (bullets != nullptr) add(*bullets, ballistic->mass());
+  if (soft != nullptr) {
+    const Totals t = softTotals();
+    b.kinetic += t.kinetic;
+    b.potential += t.potential;
+    b.strain += t.strain;
+    b.momentum += t.momentum;
+    b.mass += t.mass;
+    b.maxSpeed = std::max(b.maxSpeed, t.maxSpeed);
+  }
   const Totals free = bodyTotals();
   b.kinetic += free.kinetic;
   b.potential += free.potential;
   b.momentum += free.momentum;
   b.mass += free.mass;
-  b.finite = std::isfinite(b.kinetic + b.potential + b.momentum.x() + b.momentum.y());
+  b.finite = std::isfinite(b.kinetic + b.potential + b.strain + b.momentum.x() + b.momentum.y());
   return b;
 }
 
@@ -83,6 +106,10 @@ double World::Impl::energyScale() const {
   if (fluidModel != nullptr) {
     const double speed = 10.0 * fluidModel->supportRadius();
     creep = 0.5 * fluidModel->particleMass() * static_cast<double>(fluid->size()) * speed * speed;
+  }
+  if (soft != nullptr) {
+    const double speed = 10.0 * soft->spacing();
+    creep += 0.5 * soft->totalMass() * speed * speed;
   }
   return std::max({std::abs(ledger.energy0), ledger.maxKinetic, creep, 1e-300});
 }
@@ -134,7 +161,8 @@ void World::Impl::remove(ParticlePool& pool, double mass, std::uint64_t& counter
 void World::Impl::account(const StepStats& stats, double dt) {
   const Balance after = judged && !membersChanged ? *judged : balance();
   ledger.substeps += 1;
-  ledger.particleSteps += (fluid ? fluid->size() : 0) + (bullets ? bullets->size() : 0);
+  ledger.particleSteps += (fluid ? fluid->size() : 0) + (bullets ? bullets->size() : 0) +
+                          (soft ? soft->pool().size() * stats.softParts : 0);
   ledger.sweeps += static_cast<std::uint64_t>(stats.sweeps);
   ledger.wallHits += stats.wallHits;
   ledger.leaks += stats.leaks;

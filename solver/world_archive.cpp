@@ -29,8 +29,9 @@ void archiveLedger(Archive& a, Ledger& l) {
 }
 
 void archiveBalance(Archive& a, Balance& b) {
-  archiveFields(a, "balance",
-                std::array{&b.kinetic, &b.potential, &b.momentum.x(), &b.momentum.y(), &b.mass, &b.maxSpeed});
+  archiveFields(
+      a, "balance",
+      std::array{&b.kinetic, &b.potential, &b.momentum.x(), &b.momentum.y(), &b.mass, &b.maxSpeed, &b.strain});
 }
 
 void archiveBodyStates(Archive& a, std::vector<BodyState>& states, AlignedArray<double>& flat) {
@@ -82,6 +83,7 @@ void World::Impl::archive(Archive& a) {
     });
   }
   if (bullets != nullptr) section(a, "bullets", [&] { bullets->archive(a); });
+  if (soft != nullptr) section(a, "soft", [&] { soft->archive(a); });
   for (std::size_t k = 0; k < emitters.size(); ++k) {
     section(a, ("emitter" + std::to_string(k)).c_str(), [&] { emitters[k].archive(a); });
   }

@@ -172,6 +172,7 @@ CollisionFilter World::Impl::filterOf(Species species) const {
 }
 
 ParticlePool& World::Impl::requirePool(Species species) const {
+  if (species == Species::Soft) throw Error("particles of a soft body do not come or go alone");
   ParticlePool* pool = species == Species::Fluid ? fluid.get() : bullets.get();
   if (pool != nullptr) return *pool;
   throw Error(species == Species::Fluid ? "this world has no fluid; set WorldDef::fluid"

@@ -15,6 +15,7 @@
 #include <froude/solver/fluid/fluid_query.h>
 #include <froude/solver/rigid/body_set.h>
 #include <froude/solver/rigid/rigid_solver.h>
+#include <froude/solver/soft/soft_bodies.h>
 #include <froude/solver/world.h>
 
 namespace froude {
@@ -22,11 +23,12 @@ namespace froude {
 /// Mechanical state of all particles, for the ledger.
 struct Balance {
   double kinetic = 0.0, potential = 0.0;  // [J/m]
+  double strain = 0.0;                    // [J/m]
   Vec2 momentum{0.0, 0.0};                // [kg/s]
   double mass = 0.0;                      // [kg/m]
   double maxSpeed = 0.0;                  // [m/s]
   bool finite = true;
-  double energy() const { return kinetic + potential; }
+  double energy() const { return kinetic + potential + strain; }
 };
 
 /// visit(shift) for a point and its copies one period away along periodic axes; stops where visit returns true.
@@ -61,8 +63,10 @@ struct World::Impl {
   void publishBodies(double dt);
   BodyState stateOf(std::size_t body) const;
   void account(const StepStats& stats, double dt);
-  bool needsUndo() const { return fluidModel != nullptr || (bullets != nullptr && bodies.anyFree()); }
-  bool anyParticles() const { return fluid != nullptr || bullets != nullptr; }
+  bool needsUndo() const {
+    return fluidModel != nullptr || soft != nullptr || (bullets != nullptr && bodies.anyFree());
+  }
+  bool anyParticles() const { return fluid != nullptr || bullets != nullptr || soft != nullptr; }
   void archive(Archive& a);
 
   // The caller's force (world_force.cpp).
@@ -70,6 +74,8 @@ struct World::Impl {
   void pushByForce(double dt, StepStats& stats);
   void finishForce(double dt, StepStats& stats);
   double accelerationScale() const { return gravityScale + forceScale; }
+
+  std::size_t addSoft(const SoftDef& definition);  // world_soft.cpp
 
   // What callers change between steps (world_edit.cpp).
   void admitEdits();
@@ -91,6 +97,7 @@ struct World::Impl {
   Vec2 fastestParticle() const;
   Totals totalsOf(const ParticlePool& pool, double mass) const;
   Totals bodyTotals() const;
+  Totals softTotals() const;
   Balance balance() const;
   double potentialOf(const Vec2& x) const;  // per mass [J/kg]
   void remove(ParticlePool& pool, double mass, std::uint64_t& counter);
@@ -105,6 +112,7 @@ struct World::Impl {
   ColumnId<std::uint32_t> fluidSource, bulletSource;
   std::unique_ptr<FluidModel> fluidModel;
   std::unique_ptr<Ballistic> ballistic;
+  std::unique_ptr<SoftBodies> soft;
   std::unique_ptr<Obstacles> obstacles;
   RigidSolver rigid;
   RigidStats rigidStats;                 // of the present sub-step

@@ -10,6 +10,7 @@ constexpr double kLargestTurn = 0.5;         // [rad] of a body in a sub-step
 constexpr double kLargestBodyTravel = 0.25;  // of the support radius in a sub-step, where there is a fluid
 // A heap that is thrown together is met in small steps; what is faster yet is followed to its impacts.
 constexpr double kShortestBodyStep = 1.0 / 960.0;  // [s]
+constexpr double kSoftStep = 1.0 / 240.0;          // [s] longest of soft bodies, which divide it further
 constexpr double kRoom = 0.85;                     // [dx] between a particle that a nozzle lets in and any other
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
@@ -94,6 +95,10 @@ StepBound World::Impl::chooseStep(double maxDt) const {
     bound.tighten(fluidBound.dt, fluidBound.limit);
   }
   if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, accelerationScale()), StepLimit::Bullet);
+  if (soft != nullptr) {
+    bound.tighten(kSoftStep, StepLimit::Soft);
+    if (present.maxSpeed > 0.0) bound.tighten(soft->spacing() / present.maxSpeed, StepLimit::Soft);
+  }
   if (bodies.anyMoves()) {
     const double spin = bodies.maxSpin();
     if (spin > 0.0) bound.tighten(kLargestTurn / spin, StepLimit::Spin);
@@ -165,6 +170,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
     ballistic->advance(context, *bullets, impulses, stats);
     events.finishSpecies();
   }
+  if (soft != nullptr) soft->advance(context, def.softSettings, impulses, stats);
   explainLeaks(dt);
   finishForce(dt, stats);
   pushBodies(dt);

@@ -1,0 +1,106 @@
+#include <froude/solver/fluid/grid/grid_loops.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace froude {
+namespace {
+
+// Σ a·x_neighbour of cell (i, j) of tile t.
+float neighbours(const GridOperator& a, const float* x, std::size_t t, std::int32_t i, std::int32_t j) {
+  const TileLinks& link = a.links[t];
+  const std::size_t at = t * 256 + static_cast<std::size_t>(16 * j + i), row = static_cast<std::size_t>(16 * j);
+  const std::size_t left = i == 0 ? link.left + row : at - 1;
+  const std::size_t right = i == link.lane ? link.right + row : at + 1;
+  const std::size_t down = j == 0 ? link.down + static_cast<std::size_t>(i) : at - 16;
+  const std::size_t up = j == link.rows - 1 ? link.up + static_cast<std::size_t>(i) : at + 16;
+  return a.ax[at] * x[left] + a.ar[at] * x[right] + a.ay[at] * x[down] + a.ay[up] * x[up];
+}
+
+template <typename Body>
+void eachCell(const GridOperator& a, std::size_t begin, std::size_t end, Body&& body) {
+  for (std::size_t t = begin; t < end; ++t) {
+    for (std::int32_t j = 0; j < a.links[t].rows; ++j) {
+      for (std::int32_t i = 0; i <= a.links[t].lane; ++i) body(t, i, j, t * 256 + static_cast<std::size_t>(16 * j + i));
+    }
+  }
+}
+
+void clearSums(double* sums, std::size_t begin, std::size_t end) {
+  if (sums != nullptr) std::fill(sums + begin, sums + end, 0.0);
+}
+
+void apply(const GridOperator& a, const float* x, float* q, double* sums, std::size_t begin, std::size_t end) {
+  clearSums(sums, begin, end);
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
+    q[at] = a.diagonal[at] * x[at] - neighbours(a, x, t, i, j);
+    sums[t] += static_cast<double>(x[at] * q[at]);
+  });
+}
+
+void residual(const GridOperator& a, const float* b, const float* x, float* r, std::size_t begin, std::size_t end) {
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
+    r[at] = a.inverse[at] > 0.0f ? b[at] - a.diagonal[at] * x[at] + neighbours(a, x, t, i, j) : 0.0f;
+  });
+}
+
+void smooth(const GridOperator& a, const float* r, const float* x, float weight, float* out, double* sums,
+            std::size_t begin, std::size_t end) {
+  clearSums(sums, begin, end);
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
+    out[at] = (1.0f - weight) * x[at] + weight * a.inverse[at] * (r[at] + neighbours(a, x, t, i, j));
+    if (sums != nullptr) sums[t] += static_cast<double>(r[at] * out[at]);
+  });
+}
+
+void start(const GridOperator& a, const float* r, float weight, float* out, double* sums, std::size_t begin,
+           std::size_t end) {
+  clearSums(sums, begin, end);
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t, std::int32_t, std::size_t at) {
+    out[at] = weight * a.inverse[at] * r[at];
+    if (sums != nullptr) sums[t] = std::max(sums[t], static_cast<double>(std::abs(r[at])));
+  });
+}
+
+void restrictResidual(const GridOperator& a, const float* r, const float* x, const TileParent* parents, float* coarse,
+                      std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin; t < end; ++t) {
+    float* to = coarse + parents[t].place;
+    for (std::size_t j = 0; j < 8; ++j) std::fill(to + 16 * j, to + 16 * j + 8, 0.0f);
+  }
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
+    const auto place = parents[t].place + static_cast<std::size_t>(16 * (j / 2) + i / 2);
+    coarse[place] += r[at] - a.diagonal[at] * x[at] + neighbours(a, x, t, i, j);
+  });
+}
+
+void prolong(const GridOperator& a, const float* coarse, const TileParent* parents, float* x, std::size_t begin,
+             std::size_t end) {
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
+    if (a.inverse[at] > 0.0f) x[at] += coarse[parents[t].place + static_cast<std::size_t>(16 * (j / 2) + i / 2)];
+  });
+}
+
+void advance(const GridOperator& a, float step, const float* p, const float* q, float* kappa, float* r, float weight,
+             float* z, double* sums, std::size_t begin, std::size_t end) {
+  clearSums(sums, begin, end);
+  eachCell(a, begin, end, [&](std::size_t t, std::int32_t, std::int32_t, std::size_t at) {
+    kappa[at] += step * p[at];
+    r[at] -= step * q[at];
+    z[at] = weight * a.inverse[at] * r[at];
+    sums[t] = std::max(sums[t], static_cast<double>(std::abs(r[at])));
+  });
+}
+
+void direct(const float* z, float share, float* p, std::size_t begin, std::size_t end) {
+  for (std::size_t k = begin * 256; k < end * 256; ++k) p[k] = z[k] + share * p[k];
+}
+
+}  // namespace
+
+const GridLoops& scalarGridLoops() {
+  static constexpr GridLoops kLoops{apply, residual, smooth, start, restrictResidual, prolong, advance, direct};
+  return kLoops;
+}
+
+}  // namespace froude

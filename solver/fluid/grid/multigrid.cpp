@@ -1,0 +1,330 @@
+#include <froude/solver/fluid/grid/multigrid.h>
+
+#include <algorithm>
+#include <array>
+
+#include <froude/base/parallel.h>
+
+namespace froude {
+namespace {
+
+constexpr std::size_t kTileBlock = 8;    // tiles a task
+constexpr std::size_t kMostLevels = 28;  // coordinates of cells have 31 bits
+
+// Weights of the sweeps: reciprocals of the roots of Chebyshev's polynomial of degree 2 over those eigenvalues of D⁻¹A,
+// [1/2, 2], that cells of twice the size cannot show.
+constexpr float kRoot = 0.75f * 0.70710678f;
+constexpr std::array<float, 2> kWeights{1.0f / (1.25f + kRoot), 1.0f / (1.25f - kRoot)};
+
+template <typename Body>
+void overTiles(Crew& crew, const GridLevel& level, Body&& body) {
+  crew.stage(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) { body(begin + 1, end + 1); });
+}
+
+// Added in the order of the tiles: the same bits on any number of threads.
+double sumOf(const GridLevel& level) {
+  double all = 0.0;
+  for (std::size_t t = 1; t < level.tiles(); ++t) all += level.sums[t];
+  return all;
+}
+
+std::int32_t halved(std::int32_t period) { return (period + 1) / 2; }
+
+void linkTiles(GridLevel& level) {
+  const TileGrid& grid = *level.grid;
+  level.links.resize(level.tiles());
+  constexpr auto kCells = static_cast<std::uint32_t>(TileGrid::kCells);
+  for (std::size_t t = 1; t < level.tiles(); ++t) {
+    const Tile& tile = grid.tile(t);
+    const auto lane = static_cast<std::uint32_t>(grid.tile(tile.left).columns - 1);
+    const auto row = static_cast<std::uint32_t>(grid.tile(tile.down).rows - 1);
+    level.links[t] = {tile.left * kCells + lane, tile.right * kCells, tile.down * kCells + 16 * row,
+                      tile.up * kCells,          tile.columns - 1,    tile.rows};
+  }
+}
+
+}  // namespace
+
+float Multigrid::firstWeight() const { return used_ > 1 ? kWeights[0] : 1.0f; }
+
+void Multigrid::build(const TileGrid& grid, const PressureCoefficients& coefficients) {
+  coefficients_ = &coefficients;
+  if (levels_.empty()) levels_.resize(kMostLevels);
+  levels_[0].grid = &grid;
+  finish(levels_[0], coefficients.ax, coefficients.ay, coefficients.ground);
+  findAnchors();
+  used_ = 1;
+  while (used_ < kMostLevels && levels_[used_ - 1].coupled) {
+    coarsen(levels_[used_ - 1], levels_[used_]);
+    if (used_ == 1) joinExtras(levels_[1]);
+    finish(levels_[used_], levels_[used_].ax, levels_[used_].ay, levels_[used_].ground);
+    ++used_;
+  }
+}
+
+// The diagonal, and what the loops need beside it.
+void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const AlignedArray<float>& ay,
+                       const AlignedArray<float>& ground) {
+  linkTiles(level);
+  const bool finest = &level == &levels_[0];
+  const std::size_t places = finest ? ground.size() : level.grid->values();
+  for (AlignedArray<float>* a : {&level.ar, &level.r, &level.one, &level.two}) {
+    a->clear();
+    a->resize(places);
+  }
+  level.diagonal.resize(places);
+  level.inverse.resize(places);
+  level.sums.resize(level.tiles());
+  std::fill_n(level.diagonal.data(), TileGrid::kCells, 0.0f);
+  std::fill_n(level.inverse.data(), TileGrid::kCells, 0.0f);
+  parallelFor(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin + 1; t < end + 1; ++t) {
+      const TileLinks& link = level.links[t];
+      float coupled = 0.0f;
+      for (std::int32_t j = 0; j < 16; ++j) {
+        const std::size_t row = t * TileGrid::kCells + static_cast<std::size_t>(16 * j);
+        const std::size_t above = j == link.rows - 1 ? link.up : (j == 15 ? 0 : row + 16);
+        float* ar = level.ar.data() + row;
+        for (std::int32_t i = 0; i < link.lane; ++i) ar[i] = ax[row + static_cast<std::size_t>(i) + 1];
+        if (j < link.rows) ar[link.lane] = ax[link.right + static_cast<std::size_t>(16 * j)];
+        const float* au = ay.data() + above;
+        for (std::size_t i = 0; i < 16; ++i) {
+          const float joined = (ax[row + i] + ar[i]) + (ay[row + i] + au[i]);
+          coupled += joined;
+          level.diagonal[row + i] = joined + ground[row + i];
+        }
+      }
+      level.sums[t] = static_cast<double>(coupled);
+    }
+  });
+  level.coupled = sumOf(level) > 0.0;
+  if (finest) {
+    for (std::size_t k = level.grid->values(); k < places; ++k) level.diagonal[k] = ground[k];
+    for (const PressureEdge& edge : coefficients_->edges) {
+      level.diagonal[edge.a] += edge.coefficient;
+      level.diagonal[edge.b] += edge.coefficient;
+      level.coupled = true;
+    }
+  }
+  for (std::size_t k = TileGrid::kCells; k < places; ++k) {
+    level.inverse[k] = level.diagonal[k] > 0.0f ? 1.0f / level.diagonal[k] : 0.0f;
+  }
+  level.matrix = {level.links.data(),    ax.data(),           level.ar.data(), ay.data(),
+                  level.diagonal.data(), level.inverse.data()};
+}
+
+void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
+  const TileGrid& grid = *fine.grid;
+  indices_.clear();
+  for (std::size_t t = 1; t <= grid.size(); ++t) indices_.push_back({grid.tile(t).at.x >> 1, grid.tile(t).at.y >> 1});
+  std::sort(indices_.begin(), indices_.end());
+  const auto count = static_cast<std::size_t>(std::unique(indices_.begin(), indices_.end()) - indices_.begin());
+  const TilePeriod period{halved(grid.period().x), halved(grid.period().y)};
+  coarse.own.build({indices_.data(), count}, period);
+  coarse.grid = &coarse.own;
+  for (AlignedArray<float>* a : {&coarse.ax, &coarse.ay, &coarse.ground}) coarse.own.clear(*a);
+  fine.parents.resize(fine.tiles());
+  const float *ax = fine.matrix.ax, *ay = fine.matrix.ay;
+  const float* ground = &fine == &levels_[0] ? coefficients_->ground.data() : fine.ground.data();
+  parallelFor(grid.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin + 1; t < end + 1; ++t) {
+      const TileIndex at = grid.tile(t).at;
+      const std::size_t corner = coarse.own.find(at.x >> 1, at.y >> 1) * TileGrid::kCells +
+                                 static_cast<std::size_t>((at.y & 1) * 128 + (at.x & 1) * 8);
+      fine.parents[t].place = static_cast<std::uint32_t>(corner);
+      for (std::size_t j = 0; j < 8; ++j) {
+        for (std::size_t i = 0; i < 8; ++i) {
+          const std::size_t k = t * TileGrid::kCells + 32 * j + 2 * i, to = corner + 16 * j + i;
+          coarse.ax[to] = period.x == 1 ? 0.0f : 0.5f * (ax[k] + ax[k + 16]);
+          coarse.ay[to] = period.y == 1 ? 0.0f : 0.5f * (ay[k] + ay[k + 1]);
+          coarse.ground[to] = (ground[k] + ground[k + 1]) + (ground[k + 16] + ground[k + 17]);
+        }
+      }
+    }
+  });
+}
+
+// An extra unknown is corrected with the cell of the grid to which it is coupled most, or with that of a neighbour.
+void Multigrid::findAnchors() {
+  const std::size_t base = finest().grid->values();
+  anchors_.clear();
+  anchors_.resize(extra());
+  if (anchors_.empty()) return;
+  AlignedArray<float>& most = levels_[0].two;  // free for now
+  for (const PressureEdge& edge : coefficients_->edges) {
+    const auto weigh = [&](std::uint32_t e, std::uint32_t cell) {
+      if (e < base || cell >= base || edge.coefficient <= most[e]) return;
+      most[e] = edge.coefficient;
+      anchors_[e - base] = cell;
+    };
+    weigh(edge.a, edge.b);
+    weigh(edge.b, edge.a);
+  }
+  for (bool found = true; found;) {
+    found = false;
+    for (const PressureEdge& edge : coefficients_->edges) {
+      if (edge.a < base || edge.b < base) continue;
+      std::uint32_t &a = anchors_[edge.a - base], &b = anchors_[edge.b - base];
+      if ((a == 0) == (b == 0)) continue;
+      a = b = std::max(a, b);
+      found = true;
+    }
+  }
+  std::fill(most.begin() + base, most.end(), 0.0f);
+}
+
+// Edges join the coarse cells that hold their ends, where these are neighbours.
+void Multigrid::joinExtras(GridLevel& coarse) const {
+  const GridLevel& fine = levels_[0];
+  const std::size_t base = fine.grid->values();
+  const auto cellOf = [&](std::size_t place) {
+    return place < base ? place : static_cast<std::size_t>(anchors_[place - base]);
+  };
+  const auto parentOf = [&](std::size_t cell) {
+    const std::size_t within = cell % TileGrid::kCells;
+    return fine.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
+  };
+  for (std::size_t e = 0; e < anchors_.size(); ++e) {
+    if (anchors_[e] != 0) coarse.ground[parentOf(anchors_[e])] += coefficients_->ground[base + e];
+  }
+  for (const PressureEdge& edge : coefficients_->edges) {
+    const std::size_t a = cellOf(edge.a), b = cellOf(edge.b);
+    if (a == 0 || b == 0) continue;
+    const std::size_t from = parentOf(a), to = parentOf(b);
+    const auto at = coarse.own.cell(from);
+    const float share = 0.5f * edge.coefficient;
+    if (coarse.own.place(at[0] - 1, at[1]) == to) coarse.ax[from] += share;
+    if (coarse.own.place(at[0] + 1, at[1]) == to) coarse.ax[to] += share;
+    if (coarse.own.place(at[0], at[1] - 1) == to) coarse.ay[from] += share;
+    if (coarse.own.place(at[0], at[1] + 1) == to) coarse.ay[to] += share;
+  }
+}
+
+double Multigrid::apply(Crew& crew, const float* x, float* q) {
+  GridLevel& level = finest();
+  overTiles(crew, level,
+            [&](std::size_t b, std::size_t e) { loops_->apply(level.matrix, x, q, level.sums.data(), b, e); });
+  double product = sumOf(level);
+  for (std::size_t k = level.grid->values(); k < coefficients_->ground.size(); ++k) {
+    q[k] = level.diagonal[k] * x[k];
+    product += static_cast<double>(q[k]) * static_cast<double>(x[k]);
+  }
+  for (const PressureEdge& edge : coefficients_->edges) {
+    q[edge.a] -= edge.coefficient * x[edge.b];
+    q[edge.b] -= edge.coefficient * x[edge.a];
+    product -=
+        2.0 * static_cast<double>(edge.coefficient) * static_cast<double>(x[edge.a]) * static_cast<double>(x[edge.b]);
+  }
+  return product;
+}
+
+void Multigrid::residual(Crew& crew, const float* b, const float* x, float* r) {
+  GridLevel& level = finest();
+  overTiles(crew, level,
+            [&](std::size_t begin, std::size_t end) { loops_->residual(level.matrix, b, x, r, begin, end); });
+  for (std::size_t k = level.grid->values(); k < coefficients_->ground.size(); ++k) {
+    r[k] = level.inverse[k] > 0.0f ? b[k] - level.diagonal[k] * x[k] : 0.0f;
+  }
+  for (const PressureEdge& edge : coefficients_->edges) {
+    r[edge.a] += edge.coefficient * x[edge.b];
+    r[edge.b] += edge.coefficient * x[edge.a];
+  }
+}
+
+// Returns r·out if `sum`.
+double Multigrid::smooth(Crew& crew, GridLevel& level, const float* r, const float* x, float weight, float* out,
+                         bool sum) {
+  double* sums = sum ? level.sums.data() : nullptr;
+  overTiles(crew, level,
+            [&](std::size_t b, std::size_t e) { loops_->smooth(level.matrix, r, x, weight, out, sums, b, e); });
+  double product = sum ? sumOf(level) : 0.0;
+  if (&level != &levels_[0]) return product;
+  const auto add = [&](std::size_t k, float value) {
+    const float change = weight * level.inverse[k] * value;
+    out[k] += change;
+    product += static_cast<double>(r[k]) * static_cast<double>(change);
+  };
+  for (std::size_t k = level.grid->values(); k < coefficients_->ground.size(); ++k) {
+    out[k] = (1.0f - weight) * x[k];
+    product += static_cast<double>(r[k]) * static_cast<double>(out[k]);
+    add(k, r[k]);
+  }
+  for (const PressureEdge& edge : coefficients_->edges) {
+    add(edge.a, edge.coefficient * x[edge.b]);
+    add(edge.b, edge.coefficient * x[edge.a]);
+  }
+  return product;
+}
+
+const float* Multigrid::cycle(Crew& crew, const float* r, double& product) { return visit(crew, 0, r, &product); }
+
+// The first sweep's result is in level.one; what is returned is in level.two.
+const float* Multigrid::visit(Crew& crew, std::size_t k, const float* r, double* product) {
+  GridLevel& level = levels_[k];
+  float *one = level.one.data(), *two = level.two.data();
+  if (k + 1 == used_) {
+    overTiles(crew, level,
+              [&](std::size_t b, std::size_t e) { loops_->start(level.matrix, r, 1.0f, two, nullptr, b, e); });
+    if (product != nullptr) {
+      *product = 0.0;
+      for (std::size_t i = 0; i < level.inverse.size(); ++i) {
+        two[i] = level.inverse[i] * r[i];
+        *product += static_cast<double>(r[i]) * static_cast<double>(two[i]);
+      }
+    }
+    return two;
+  }
+  GridLevel& coarse = levels_[k + 1];
+  const auto [first, second] = kWeights;
+  smooth(crew, level, r, one, second, two, false);
+  overTiles(crew, level, [&](std::size_t b, std::size_t e) {
+    loops_->restrictResidual(level.matrix, r, two, level.parents.data(), coarse.r.data(), b, e);
+  });
+  const std::size_t base = level.grid->values();
+  const auto parentOf = [&](std::size_t cell) {
+    const std::size_t within = cell % TileGrid::kCells;
+    return level.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
+  };
+  if (k == 0) {
+    const auto give = [&](std::size_t place, float value) {
+      const std::size_t cell = place < base ? place : anchors_[place - base];
+      if (cell != 0) coarse.r[parentOf(cell)] += value;
+    };
+    for (std::size_t e = base; e < base + extra(); ++e) give(e, r[e] - level.diagonal[e] * two[e]);
+    for (const PressureEdge& edge : coefficients_->edges) {
+      give(edge.a, edge.coefficient * two[edge.b]);
+      give(edge.b, edge.coefficient * two[edge.a]);
+    }
+  }
+  overTiles(crew, coarse, [&](std::size_t b, std::size_t e) {
+    loops_->start(coarse.matrix, coarse.r.data(), first, coarse.one.data(), nullptr, b, e);
+  });
+  const float* correction = visit(crew, k + 1, coarse.r.data(), nullptr);
+  overTiles(crew, level, [&](std::size_t b, std::size_t e) {
+    loops_->prolong(level.matrix, correction, level.parents.data(), two, b, e);
+  });
+  if (k == 0) {
+    for (std::size_t e = 0; e < extra(); ++e) {
+      if (anchors_[e] != 0 && level.inverse[base + e] > 0.0f) two[base + e] += correction[parentOf(anchors_[e])];
+    }
+  }
+  smooth(crew, level, r, two, second, one, false);
+  const double sum = smooth(crew, level, r, one, first, two, product != nullptr);
+  if (product != nullptr) *product = sum;
+  return two;
+}
+
+std::size_t Multigrid::memoryBytes() const {
+  std::size_t bytes = indices_.capacity() * sizeof(TileIndex) + anchors_.capacity() * sizeof(std::uint32_t);
+  for (const GridLevel& level : levels_) {
+    bytes += level.own.memoryBytes() + level.links.capacity() * sizeof(TileLinks) +
+             level.parents.capacity() * sizeof(TileParent) + level.sums.capacity() * sizeof(double);
+    for (const AlignedArray<float>* a : {&level.ax, &level.ay, &level.ground, &level.ar, &level.diagonal,
+                                         &level.inverse, &level.r, &level.one, &level.two}) {
+      bytes += a->capacity() * sizeof(float);
+    }
+  }
+  return bytes;
+}
+
+}  // namespace froude

@@ -1,0 +1,218 @@
+#include <froude/solver/soft/soft_bodies.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <froude/base/parallel.h>
+#include <froude/base/transform.h>
+
+namespace froude {
+namespace {
+
+// Of the largest part with which the predictor alone would be stable, 2/ω. The sweep stays stable to 1.5 of it on a
+// body at rest (measured); the rest is for what is compressed.
+constexpr double kPartOfBound = 0.8;
+
+}  // namespace
+
+SoftBodies::SoftBodies()
+    : pool_(PoolSettings{1024, GrowthPolicy::Grow, "soft"}),
+      mass_(pool_.addColumn<double>("mass", ColumnKind::State)),
+      bodyOf_(pool_.addColumn<std::uint32_t>("body", ColumnKind::State)) {}
+
+void SoftBodies::add(SoftDef def) {
+  auto body = std::make_unique<SoftBody>(std::move(def));
+  const SoftDef& d = body->def;
+  const std::size_t count = body->points();
+  pool_.reserve(pool_.size() + count);
+  first_.push_back(pool_.size());
+  const Transform pose = Transform::of(d.position, d.angle);
+  Vec2 center(0.0, 0.0);
+  for (std::size_t k = 0; k < count; ++k) center += body->mass[k] / body->totalMass * d.mesh->points[k];
+  center = pose.toWorld(center);
+  for (std::size_t k = 0; k < count; ++k) {
+    pool_.create();
+    const std::size_t i = pool_.size() - 1;
+    const Vec2 at = pose.toWorld(d.mesh->points[k]);
+    const Vec2 v = body->inverseMass[k] > 0.0 ? Vec2(d.velocity + cross(d.spin, Vec2(at - center))) : Vec2(0.0, 0.0);
+    pool_.x()[i] = at.x();
+    pool_.y()[i] = at.y();
+    pool_.vx()[i] = v.x();
+    pool_.vy()[i] = v.y();
+    pool_.column(mass_)[i] = body->mass[k];
+    pool_.column(bodyOf_)[i] = static_cast<std::uint32_t>(bodies_.size());
+  }
+  frequencySquared_ = std::max(frequencySquared_, body->frequencySquared);
+  spacing_ = std::min(spacing_, d.spacing);
+  totalMass_ += body->totalMass;
+  bodies_.push_back(std::move(body));
+  const std::size_t rows = pool_.size() + bodies_.size();
+  for (auto* column : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &fromX_, &fromY_, &startX_, &startY_, &inverseMass_, &free_}) {
+    column->resize(rows);
+  }
+  for (std::size_t k = 0; k < count; ++k) inverseMass_[offset(bodies_.size() - 1) + k] = bodies_.back()->inverseMass[k];
+  touches_.resize(bodies_.size());
+  gravityImpulse_.resize(bodies_.size());
+  touchImpulse_.resize(bodies_.size());
+  momentumBefore_.resize(bodies_.size());
+  gravityWork_.resize(bodies_.size());
+}
+
+int SoftBodies::partsOf(double dt, const SoftSettings& settings) const {
+  const double part = settings.substeps > 0 ? 1.0 / (60.0 * settings.substeps)
+                                            : kPartOfBound * 2.0 / std::sqrt(std::max(frequencySquared_, 1e-300));
+  return static_cast<int>(std::clamp(std::ceil(dt / part * (1.0 - 1e-12)), 1.0, 1e6));
+}
+
+NodeColumns SoftBodies::columnsOf(std::size_t i) {
+  const std::size_t o = offset(i);
+  return {x_.data() + o, y_.data() + o, fx_.data() + o, fy_.data() + o, inverseMass_.data() + o};
+}
+
+void SoftBodies::load(const StepContext& context) {
+  parallelFor(count(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t o = offset(i), f = first_[i];
+      Vec2 momentum(0.0, 0.0);
+      for (std::size_t k = 0; k < body(i).points(); ++k) {
+        x_[o + k] = startX_[o + k] = pool_.x()[f + k];
+        y_[o + k] = startY_[o + k] = pool_.y()[f + k];
+        vx_[o + k] = pool_.vx()[f + k];
+        vy_[o + k] = pool_.vy()[f + k];
+        momentum += body(i).mass[k] * Vec2(vx_[o + k], vy_[o + k]);
+        free_[o + k] = context.obstacles.clearance({x_[o + k], y_[o + k]}) - 0.5 * body(i).def.thickness;
+      }
+      momentumBefore_[i] = momentum;
+      gravityImpulse_[i] = touchImpulse_[i] = Vec2(0.0, 0.0);
+      gravityWork_[i] = 0.0;
+      touches_[i].clear();
+    }
+  });
+}
+
+void SoftBodies::store() {
+  parallelFor(count(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t o = offset(i), f = first_[i];
+      for (std::size_t k = 0; k < body(i).points(); ++k) {
+        pool_.x()[f + k] = x_[o + k];
+        pool_.y()[f + k] = y_[o + k];
+        pool_.vx()[f + k] = vx_[o + k];
+        pool_.vy()[f + k] = vy_[o + k];
+      }
+    }
+  });
+}
+
+void SoftBodies::advance(const StepContext& context, const SoftSettings& settings, ImpulseLedger& impulses,
+                         StepStats& stats) {
+  const int parts = partsOf(context.dt, settings);
+  const double dt = context.dt / parts;
+  load(context);
+  for (int p = 0; p < parts; ++p) {
+    const Part part{dt, static_cast<double>(p) / parts, static_cast<double>(p + 1) / parts};
+    parallelFor(count(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) move(context, part, i);
+    });
+    book(context, dt, impulses, stats);
+  }
+  store();
+  stats.softParts += static_cast<std::uint64_t>(parts);
+  for (std::size_t i = 0; i < count(); ++i) {
+    stats.gravityImpulse += gravityImpulse_[i];
+    stats.gravityWork += gravityWork_[i];
+    if (!body(i).anyPinned) continue;
+    Vec2 momentum(0.0, 0.0);
+    for (std::size_t k = 0; k < body(i).points(); ++k) {
+      momentum += body(i).mass[k] * Vec2(vx_[offset(i) + k], vy_[offset(i) + k]);
+    }
+    // What holds the pinned points gave the rest.
+    const Vec2 held = momentum - momentumBefore_[i] - gravityImpulse_[i] - touchImpulse_[i];
+    const std::size_t pin = offset(i) + body(i).def.pinned.front();
+    impulses.add(-1, {x_[pin], y_[pin]}, -held, {0.0, 0.0});
+  }
+}
+
+// Elastic forces where the points are, and their multipliers.
+void SoftBodies::feelStrain(const StepContext& context, std::size_t i) {
+  const SoftBody& b = body(i);
+  const std::size_t o = offset(i), end = o + b.points();
+  std::fill(fx_.begin() + o, fx_.begin() + end, 0.0);
+  std::fill(fy_.begin() + o, fy_.begin() + end, 0.0);
+  if (!b.inflated.empty()) inflate(i);
+  if (!b.isStrain()) {
+    bodies_[i]->links.force(columnsOf(i));
+    return;
+  }
+  StrainElements& elements = bodies_[i]->elements;
+  const StrainLoops loops = strainLoops(b.strainModel(), context.simd);
+  for (std::size_t c = 0; c + 1 < elements.colors.size(); ++c) {
+    loops.force(b.lame, elements, columnsOf(i), elements.colors[c], elements.colors[c + 1]);
+  }
+}
+
+// Half of the pressure on each edge to each of its ends, outwards.
+void SoftBodies::inflate(std::size_t i) {
+  const NodeColumns n = columnsOf(i);
+  const double half = 0.5 * body(i).def.pressure;
+  for (const auto& [a, b] : body(i).inflated) {
+    const double dx = n.x[b] - n.x[a], dy = n.y[b] - n.y[a];
+    n.fx[a] += half * dy;
+    n.fy[a] -= half * dx;
+    n.fx[b] += half * dy;
+    n.fy[b] -= half * dx;
+  }
+}
+
+void SoftBodies::correct(const StepContext& context, std::size_t i, double dt) {
+  SoftBody& b = *bodies_[i];
+  if (!b.clusters.empty()) b.clusters.project(b.matching, dt * dt, columnsOf(i));
+  if (!b.isStrain()) {
+    b.links.project(dt * dt, columnsOf(i));
+    return;
+  }
+  StrainElements& elements = bodies_[i]->elements;
+  const StrainLoops loops = strainLoops(body(i).strainModel(), context.simd);
+  for (std::size_t c = 0; c + 1 < elements.colors.size(); ++c) {
+    loops.project(body(i).lame, dt * dt, elements, columnsOf(i), elements.colors[c], elements.colors[c + 1]);
+  }
+}
+
+void SoftBodies::move(const StepContext& context, const Part& part, std::size_t i) {
+  const SoftBody& b = body(i);
+  const std::size_t o = offset(i), end = o + b.points();
+  const double dt = part.dt, time = context.time + part.begin * context.dt;
+  feelStrain(context, i);
+  const bool constant = context.gravity.isConstant();
+  Vec2 g = context.gravity.constant(), impulse(0.0, 0.0);
+  for (std::size_t k = o; k < end; ++k) {
+    fromX_[k] = x_[k];
+    fromY_[k] = y_[k];
+    const double w = inverseMass_[k];
+    if (w == 0.0) continue;
+    if (!constant) g = context.gravity.at({x_[k], y_[k]}, time);
+    impulse += dt / w * g;
+    x_[k] += dt * (vx_[k] + dt * (g.x() + w * fx_[k]));
+    y_[k] += dt * (vy_[k] + dt * (g.y() + w * fy_[k]));
+  }
+  gravityImpulse_[i] += impulse;
+  correct(context, i, dt);
+  meetObstacles(context, part, i);
+  const double rate = 1.0 / dt;
+  for (std::size_t k = o; k < end; ++k) {
+    vx_[k] = rate * (x_[k] - fromX_[k]);
+    vy_[k] = rate * (y_[k] - fromY_[k]);
+  }
+  if (!constant) {
+    double work = 0.0;
+    for (std::size_t k = o; k < end; ++k) {
+      if (inverseMass_[k] == 0.0) continue;
+      g = context.gravity.at({fromX_[k], fromY_[k]}, time);
+      work += g.dot(Vec2(x_[k] - fromX_[k], y_[k] - fromY_[k])) / inverseMass_[k];
+    }
+    gravityWork_[i] += work;
+  }
+  if (b.def.damping > 0.0) damp(i, dt);
+}
+
+}  // namespace froude

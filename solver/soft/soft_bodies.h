@@ -1,0 +1,100 @@
+// Deformable bodies of a world: their particles, and how a sub-step moves them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <froude/base/archive.h>
+#include <froude/particles/pool.h>
+#include <froude/solver/soft/soft_body.h>
+#include <froude/solver/step_context.h>
+
+namespace froude {
+
+/// Sums over soft particles.
+struct SoftSums {
+  double mass = 0.0, kinetic = 0.0, strain = 0.0;  // [kg/m], [J/m]
+  Vec2 momentum{0, 0}, massCenter{0, 0};           // [kg/s], Σ m x [kg]
+  double angular = 0.0, maxSpeed = 0.0;            // about the world's origin; [m/s]
+};
+
+/// The soft bodies. Their particles stand in a pool of their own, body by body in the order of the mesh's points, and
+/// are never sorted: elements name them by index, masses differ, and none comes or goes alone.
+///
+/// A sub-step of the world is divided so that the fastest wave crosses no element within a part (kPartOfBound). In each
+/// part the elastic forces and gravity predict where the points go (symplectic Euler), then one XPBD sweep that starts
+/// from these forces' multipliers corrects it towards the implicit step: a state in balance is left as it is whatever
+/// the part, slow motions are hardly damped, and what would be unstable is. Sources: Macklin, Müller & Chentanez 2016
+/// (XPBD); Macklin et al. 2019 (small steps); Macklin & Müller 2021 (neo-Hookean).
+class SoftBodies {
+ public:
+  SoftBodies();
+  SoftBodies(const SoftBodies&) = delete;
+  SoftBodies& operator=(const SoftBodies&) = delete;
+
+  /// Appends a body. Throws Error for a definition that cannot work; nothing is changed then.
+  void add(SoftDef def);
+
+  std::size_t count() const { return bodies_.size(); }
+  const SoftBody& body(std::size_t i) const { return *bodies_[i]; }
+  /// Pool index of its first particle.
+  std::size_t first(std::size_t i) const { return first_[i]; }
+  ParticlePool& pool() { return pool_; }
+  const ParticlePool& pool() const { return pool_; }
+  ColumnId<double> massColumn() const { return mass_; }
+
+  /// Parts that a sub-step of dt [s] is divided into.
+  int partsOf(double dt, const SoftSettings& settings) const;
+  double totalMass() const { return totalMass_; }  // [kg/m]
+  /// Smallest distance of neighbours in any body [m].
+  double spacing() const { return spacing_; }
+  /// One sub-step. Particles meet fixed and scripted polygons, and free ones by what their motion is.
+  void advance(const StepContext& context, const SoftSettings& settings, ImpulseLedger& impulses, StepStats& stats);
+
+  SoftSums sums() const;
+  SoftSums sumsOf(std::size_t i) const;
+  /// As World::softStrain; and how many triangles or links are torn.
+  void strainOf(std::size_t i, std::vector<double>& values) const;
+  std::size_t tornOf(std::size_t i) const;
+  /// Σ over its triangles [m²]; a rope has none.
+  double areaOf(std::size_t i) const;
+
+  void archive(Archive& a);
+
+ private:
+  struct Touch {
+    int body;
+    Vec2 at, impulse, surface;  // [m], on the obstacle [kg·m/s per metre], [m/s]
+  };
+  // One part of the sub-step: shares [begin, end] of it.
+  struct Part {
+    double dt, begin, end;
+  };
+  NodeColumns columnsOf(std::size_t i);
+  std::size_t offset(std::size_t i) const { return first_[i] + i; }  // into the work columns, with a dummy a body
+  void load(const StepContext& context);
+  void store();
+  void move(const StepContext& context, const Part& part, std::size_t i);
+  void feelStrain(const StepContext& context, std::size_t i);
+  void correct(const StepContext& context, std::size_t i, double dt);
+  void inflate(std::size_t i);
+  double strainEnergyOf(std::size_t i) const;
+  void meetObstacles(const StepContext& context, const Part& part, std::size_t i);
+  void meet(const StepContext& context, const Part& part, std::size_t i, std::size_t node);
+  void damp(std::size_t i, double dt);
+  void book(const StepContext& context, double dt, ImpulseLedger& impulses, StepStats& stats);
+
+  ParticlePool pool_;
+  ColumnId<double> mass_;
+  ColumnId<std::uint32_t> bodyOf_;
+  std::vector<std::unique_ptr<SoftBody>> bodies_;
+  std::vector<std::size_t> first_;
+  double frequencySquared_ = 0.0, spacing_ = kInfinity, totalMass_ = 0.0;
+  // Work columns: position, velocity, force, position at the start of the part and of the sub-step.
+  AlignedArray<double> x_, y_, vx_, vy_, fx_, fy_, fromX_, fromY_, startX_, startY_, inverseMass_, free_;
+  std::vector<std::vector<Touch>> touches_;                           // by body, of one part
+  std::vector<Vec2> gravityImpulse_, touchImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
+  std::vector<double> gravityWork_;                                   // by body [J/m]
+};
+
+}  // namespace froude

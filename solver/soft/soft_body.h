@@ -1,0 +1,41 @@
+// One deformable body as its solver sees it: the definition, compiled.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <froude/solver/definitions.h>
+#include <froude/solver/soft/links.h>
+#include <froude/solver/soft/shape_clusters.h>
+#include <froude/solver/soft/strain_elements.h>
+
+namespace froude {
+
+/// What of a body never changes, and what of it tears.
+struct SoftBody {
+  /// Throws Error for a definition that cannot work.
+  explicit SoftBody(SoftDef definition);
+
+  void compile();
+  std::size_t points() const { return def.mesh->points.size(); }
+  bool isStrain() const { return def.model == SoftModel::NeoHookean || def.model == SoftModel::StVenantKirchhoff; }
+  StrainModel strainModel() const {
+    return def.model == SoftModel::NeoHookean ? StrainModel::NeoHookean : StrainModel::StVenantKirchhoff;
+  }
+
+  SoftDef def;
+  Lame lame;
+  std::vector<double> mass, inverseMass;  // by point [kg/m], [m/kg]; inverse 0: pinned
+  double totalMass = 0.0;                 // [kg/m]
+  StrainElements elements;                // of the elastic models
+  Links links;                            // of springs and ropes
+  ShapeClusters clusters;                 // of shape matching
+  double matching = 0.0;                  // angular frequency² of its springs to the goals [1/s²]
+  /// Edges on which the inner pressure presses, to their right: those of holes if there are any, else all.
+  std::vector<std::array<std::uint32_t, 2>> inflated;
+  double frequencySquared = 0.0;  // no angular frequency² of the body is above it [1/s²]
+  bool anyPinned = false;
+  std::vector<std::uint32_t> torn;  // triangles that gave way, in that order
+};
+
+}  // namespace froude
