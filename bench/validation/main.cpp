@@ -1,4 +1,5 @@
-// How right is each fluid method and each model of soft bodies, how does that improve with resolution, and what does it cost?
+// How right is each fluid method and each model of soft bodies, how does that improve with resolution, and what does it
+// cost?
 //
 //   validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--limit SECONDS] [--rows FILE] [--list]
 //

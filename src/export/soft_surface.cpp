@@ -2,54 +2,61 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/LU>
+#include <utility>
 
 namespace froude::exporting {
 namespace {
 
-using Matrix2 = Eigen::Matrix2d;
+using Edge = std::array<std::uint32_t, 2>;
 
-Matrix2 edges(const Vec2& a, const Vec2& b, const Vec2& c) {
-  Matrix2 m;
-  m << b - a, c - a;
-  return m;
+/// Edges that belong to one of the triangles alone.
+std::vector<Edge> outlineOf(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<Edge> edges;
+  for (const auto& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
+  std::sort(edges.begin(), edges.end());
+  std::vector<Edge> outline;
+  for (const Edge& edge : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), Edge{edge[1], edge[0]})) outline.push_back(edge);
+  return outline;
 }
 
-/// From the deformation gradient's singular values, the smaller one signed.
-double strainOf(const Matrix2& f) {
-  const double turning = std::hypot(f(0, 0) + f(1, 1), f(1, 0) - f(0, 1));
-  const double shear = std::hypot(f(0, 0) - f(1, 1), f(1, 0) + f(0, 1));
-  return std::max(std::abs(0.5 * (turning + shear) - 1.0), std::abs(0.5 * (turning - shear) - 1.0));
-}
-
-void addBody(const World& world, std::size_t body, SoftSurface& surface) {
+void addRope(const World& world, std::size_t body, const std::vector<double>& strain, SoftSurface& surface) {
   const SoftDef& def = world.softDefinition(body);
-  const TriangleMesh& mesh = *def.mesh;
   const auto first = static_cast<std::uint32_t>(world.softFirst(body));
-  const auto x = world.soft()->x(), y = world.soft()->y();
-  const auto at = [&](std::uint32_t point) { return Vec2(x[first + point], y[first + point]); };
-  for (const auto& t : mesh.triangles) {
-    const Matrix2 rest = edges(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-    const Matrix2 now = edges(at(t[0]), at(t[1]), at(t[2]));
-    surface.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    surface.strain.push_back(static_cast<float>(strainOf(now * rest.inverse())));
-  }
-  const bool rope = def.model == SoftModel::Rope;
-  for (const auto& edge : mesh.outline) {
-    (rope ? surface.links : surface.outline).push_back({first + edge[0], first + edge[1]});
-    if (!rope) continue;
-    const double rest = (mesh.points[edge[1]] - mesh.points[edge[0]]).norm();
-    surface.linkStrain.push_back(static_cast<float>(std::abs((at(edge[1]) - at(edge[0])).norm() / rest - 1.0)));
+  for (std::size_t k = 0; k < def.mesh->outline.size(); ++k) {
+    if (std::isnan(strain[k])) continue;
+    const Edge& link = def.mesh->outline[k];
+    surface.links.push_back({first + link[0], first + link[1]});
+    surface.linkStrain.push_back(static_cast<float>(strain[k]));
     surface.linkThickness.push_back(static_cast<float>(def.thickness));
   }
+}
+
+void addTriangles(const World& world, std::size_t body, const std::vector<double>& strain, SoftSurface& surface) {
+  const TriangleMesh& mesh = *world.softDefinition(body).mesh;
+  const auto first = static_cast<std::uint32_t>(world.softFirst(body));
+  std::vector<std::array<std::uint32_t, 3>> whole;
+  for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+    if (std::isnan(strain[k])) continue;
+    whole.push_back(mesh.triangles[k]);
+    surface.strain.push_back(static_cast<float>(strain[k]));
+  }
+  for (const auto& t : whole) surface.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  for (const Edge& edge : whole.size() < mesh.triangles.size() ? outlineOf(whole) : mesh.outline)
+    surface.outline.push_back({first + edge[0], first + edge[1]});
 }
 
 }  // namespace
 
 SoftSurface softSurface(const World& world) {
   SoftSurface surface;
-  for (std::size_t body = 0; body < world.softCount(); ++body) addBody(world, body, surface);
+  std::vector<double> strain;
+  for (std::size_t body = 0; body < world.softCount(); ++body) {
+    world.softStrain(body, strain);
+    const bool rope = world.softDefinition(body).model == SoftModel::Rope;
+    (rope ? addRope : addTriangles)(world, body, strain, surface);
+  }
   return surface;
 }
 

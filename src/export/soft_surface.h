@@ -8,8 +8,8 @@
 
 namespace froude::exporting {
 
-/// Numbers are those of the soft particles' pool. Strain is the largest |principal stretch − 1| [1]: 0 for what only
-/// moves and turns, above 1 for a triangle that is turned over.
+/// Numbers are those of the soft particles' pool; what is torn is left out. Strain is the largest |principal stretch −
+/// 1| [1]: 0 for what only moves and turns, above 1 for a triangle that is turned over.
 struct SoftSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<float> strain;                          ///< of each triangle

@@ -16,7 +16,7 @@ constexpr double kMostTests = 2e8;  // point against edge, in one scene
 constexpr std::size_t kMostSaid = 5;
 constexpr double kRounding = 1e-9;     // [m]
 constexpr double kTouch = 0.02;        // of the spacing: below, two bodies are meant to touch
-constexpr double kFewestAcross = 3.0;  // triangles across a body that bends
+constexpr double kFewestAcross = 2.0;  // triangles across a body that bends
 constexpr double kNearlyRigidVolume = 0.49;
 constexpr double kSagging = 0.5;  // strain under the own weight
 

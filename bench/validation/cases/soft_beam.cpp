@@ -111,32 +111,34 @@ class Vibration final : public Measure {
   double period_, first_ = 0.0, most_ = -1e300, last_ = 0.0, swing_ = 0.0;
 };
 
-// A strip of L = 1 m, h = 0.1 m, ν = 0.3 that is clamped: 0.13741 m per m/s² of gravity at E = 1e6, ρ = 1000, by quadratic
-// finite elements; Timoshenko's beam gives 0.13806, Euler's 0.13650.
+// A strip of L = 1 m, h = 0.1 m, ν = 0.3 that is clamped: 0.13741 m per m/s² of gravity at E = 1e6, ρ = 1000, by
+// quadratic finite elements; Timoshenko's beam gives 0.13806, Euler's 0.13650.
 const Registered kCantilever{
     {.name = "cantilever",
-     .measures = "sag of the tip under the own weight, against plane elasticity by fine quadratic elements (Timoshenko's "
-                 "beam is 0.5 % softer)",
+     .measures =
+         "sag of the tip under the own weight, against plane elasticity by fine quadratic elements (Timoshenko's "
+         "beam is 0.5 % softer)",
      .scene = "cantilever",
      .every = 0.02,
      .full = {{0.1 / 3, 0.1 / 6, 0.1 / 12}, {}},
      .quick = {{0.1 / 3}, {{"duration", "3.0"}}},
-     .measure = [](const scene::Scene& s) {
-       return std::make_unique<TipAtRest>(s, Vec2(1.0, 0.0), Vec2(0.0, -0.013741), 0.02);
-     },
+     .measure =
+         [](const scene::Scene& s) {
+           return std::make_unique<TipAtRest>(s, Vec2(1.0, 0.0), Vec2(0.0, -0.013741), 0.02);
+         },
      .softModels = {"neo-hookean", "stvk"}}};
 
-const Registered kCsm1{
-    {.name = "csm1",
-     .measures = "where the flag comes to rest, E = 1.4e6: Turek & Hron 2006, table of CSM1",
-     .scene = "flag",
-     .every = 0.01,
-     .full = {{0.02 / 3, 0.02 / 6, 0.02 / 12}, {{"soft.0.damping", "14.0"}, {"duration", "3.0"}}},
-     .quick = {{0.02 / 2}, {{"soft.0.damping", "14.0"}, {"duration", "0.2"}}},
-     .measure = [](const scene::Scene& s) {
-       return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.007187, -0.0661), 0.03);
-     },
-     .softModels = {"stvk"}}};
+const Registered kCsm1{{.name = "csm1",
+                        .measures = "where the flag comes to rest, E = 1.4e6: Turek & Hron 2006, table of CSM1",
+                        .scene = "flag",
+                        .every = 0.01,
+                        .full = {{0.02 / 3, 0.02 / 6, 0.02 / 12}, {{"soft.0.damping", "14.0"}, {"duration", "3.0"}}},
+                        .quick = {{0.02 / 2}, {{"soft.0.damping", "14.0"}, {"duration", "0.2"}}},
+                        .measure =
+                            [](const scene::Scene& s) {
+                              return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.007187, -0.0661), 0.03);
+                            },
+                        .softModels = {"stvk"}}};
 
 const Registered kCsm2{
     {.name = "csm2",
@@ -146,14 +148,16 @@ const Registered kCsm2{
      .full = {{0.02 / 3, 0.02 / 6, 0.02 / 12},
               {{"soft.0.damping", "28.0"}, {"soft.0.young", "5.6e6"}, {"duration", "1.5"}}},
      .quick = {{0.02 / 2}, {{"soft.0.damping", "28.0"}, {"soft.0.young", "5.6e6"}, {"duration", "0.1"}}},
-     .measure = [](const scene::Scene& s) {
-       return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.000469, -0.01697), 0.03);
-     },
+     .measure =
+         [](const scene::Scene& s) {
+           return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.000469, -0.01697), 0.03);
+         },
      .softModels = {"stvk"}}};
 
 const Registered kCsm3{
     {.name = "csm3",
-     .measures = "the flag swings without loss: mean period and depth of its minima over 5 s, rms over 2 s; FeatFlow's curve",
+     .measures =
+         "the flag swings without loss: mean period and depth of its minima over 5 s, rms over 2 s; FeatFlow's curve",
      .scene = "flag",
      .every = 0.005,
      .full = {{0.02 / 3, 0.02 / 6, 0.02 / 12}, {}},
