@@ -17,6 +17,7 @@ GradientCorrection::Sum GradientCorrection::around(const GridFrame& frame, std::
   const auto cy = static_cast<std::int32_t>(cell / static_cast<std::uint32_t>(frame.nx));
   auto wrapped = [](std::int32_t k, std::int32_t n, bool periodic) { return periodic ? (k + n) % n : k; };
   Sum sum;
+  sum.surface = 0.0f;
   for (std::int32_t y = cy - kReach; y <= cy + kReach; ++y) {
     const std::int32_t row = wrapped(y, frame.ny, frame.periodicY);
     if (row < 0 || row >= frame.ny) continue;
@@ -29,9 +30,10 @@ GradientCorrection::Sum GradientCorrection::around(const GridFrame& frame, std::
       sum.xy += other.xy;
       sum.yy += other.yy;
       sum.count += other.count;
+      sum.surface += other.surface;
       sum.open += other.open;
-      // An empty cell is a surface, or the other side of a wall.
-      sum.surface += other.surface + (other.count == 0.0f ? 1.0f : 0.0f);
+      sum.none[0] += other.none[0];
+      sum.none[1] += other.none[1];
     }
   }
   return sum;
@@ -49,6 +51,7 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
   parallelFor(occupied.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Sum sum;
+      sum.surface = 0.0f;
       for (std::uint32_t i = start[occupied[k]]; i < start[occupied[k] + 1]; ++i) {
         if (place[i] != Place::Inside) {
           sum.surface += 1.0f;
@@ -60,6 +63,7 @@ void GradientCorrection::build(const CellGrid& grid, std::span<const std::uint32
         sum.yy += moment.yy[i];
         sum.count += 1.0f;
       }
+      if (sum.count == 0.0f) sum.surface += 1.0f;
       cells_[occupied[k]] = sum;
     }
   });

@@ -38,11 +38,12 @@ class GradientCorrection {
   std::size_t memoryBytes() const;
 
  private:
-  struct Sum {
+  struct alignas(32) Sum {  // one or two registers
     float xx = 0.0f, xy = 0.0f, yy = 0.0f;
     float count = 0.0f;    // of particles inside
-    float surface = 0.0f;  // of others
+    float surface = 1.0f;  // of others; 1 more where there are none inside: a surface, or the other side of a wall
     float open = 0.0f;     // of these at a free surface
+    float none[2] = {0.0f, 0.0f};
   };
   Sum around(const GridFrame& frame, std::uint32_t cell) const;
 

@@ -47,7 +47,13 @@ struct PairFrame {
   std::int32_t periodX = 0, periodY = 0;  // lattice units
   HiddenPairs hidden;
   kernel::Kind kernel = kernel::Kind::Blend;  // of `moments` and `viscosity`
+  const std::uint8_t* near = nullptr;         // by `PairLoops::near`; null: all candidates are looked at
 };
+
+/// Of a particle in a cell that is Usual or Long: which of its cell's candidates are neighbours, in a row of so many.
+inline constexpr std::size_t kNearRow = 16;
+/// Largest distance of such a neighbour, in support radii: what comes nearer within a sub-step weighs next to nothing.
+inline constexpr float kNearReach = 1.05f;
 
 /// One Jacobi sweep in the wake of the densities: change = max(least − κ, relaxation·(density − target)/diagonal), the
 /// paper's λ (eq. 11) as a correction of what is there already. A target of 0 marks a particle that is new: what it
@@ -106,6 +112,16 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
+/// Pressures of weakly compressible fluids by their densities: κ = stiffness·(ρ' + background), with Tait's equation of
+/// ((1 + ρ')⁷ − 1)/7 for ρ'; and κB times the particles' volume. ρ' is first raised to the least that it may be.
+struct StateEquation {
+  const float* least = nullptr;  // by particle
+  float stiffness = 0.0f, background = 0.0f;
+  bool tait = false;
+  float* pressure = nullptr;  // null: nothing of this
+  Matrices<float> scaled;
+};
+
 /// With Wendland's kernel: what displacements u make of densities in an acoustic step, with diffusion: next = ρ' +
 /// share·(Σ (uᵢ − uⱼ)·Bᵢ∇W + 2(u·g + λ') + diffusion Σ (−F)·((ρ'ⱼ − ρ'ᵢ) + ½(Gᵢ + Gⱼ)·(xᵢ − xⱼ))), ρ' = ρ/ρ0 − 1 and G
 /// its gradient, taken from the acceleration by pressures: G = slope·a. The last term is zero where ρ' is linear
@@ -127,6 +143,9 @@ struct RateLoop {
   float wallShare = 1.0f;           // of it in this step
   const float* share = nullptr;     // by particle, of all these gains
   float* next = nullptr;
+  StateEquation state{};         // of `next`
+  std::int32_t* newX = nullptr;  // where not null: PairFrame::x plus u
+  std::int32_t* newY = nullptr;
 };
 
 /// Displacement by a pressure: s −= Σ (κᵢ + κⱼ)∇W + 2κᵢ g, and the coordinates that follow from it. Behind the wall the
@@ -184,7 +203,11 @@ struct ForceLoop {
   float* shiftY = nullptr;
   float* ux = nullptr;  // in and out
   float* uy = nullptr;
-  float* kappa = nullptr;  // where not null, `pressure` is added to it
+  float* kappa = nullptr;        // where not null, `pressure` is added to it
+  const float* fallX = nullptr;  // where not null, added to u
+  const float* fallY = nullptr;
+  float* totalX = nullptr;  // where not null, the shifts are added to it
+  float* totalY = nullptr;
 };
 
 /// Fills `runs`, one for each of `cells`. Reuses the memory.
@@ -205,6 +228,9 @@ struct PairLoops {
   /// = 1.
   std::array<double, 2> (*force)(const PairFrame&, const ForceLoop&, std::size_t begin, std::size_t end);
   void (*rate)(const PairFrame&, const RateLoop&, std::size_t begin, std::size_t end);
+  /// Fills rows of kNearRow for the particles of cells that are Usual or Long, for PairFrame::near of later loops. Null
+  /// where it would not pay: candidates of a cell must fit into the registers that a look-up takes.
+  void (*near)(const PairFrame&, std::uint8_t* rows, std::size_t begin, std::size_t end);
 };
 
 /// Plain C++ in the order of the formulas: the oracle of the wide versions.

@@ -251,8 +251,34 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
     loop.shiftY[i] = moveY;
     loop.ux[i] += moveX;
     loop.uy[i] += moveY;
+    if (loop.fallX != nullptr) {
+      loop.ux[i] += loop.fallX[i];
+      loop.uy[i] += loop.fallY[i];
+    }
+    if (loop.totalX != nullptr) {
+      loop.totalX[i] += moveX;
+      loop.totalY[i] += moveY;
+    }
   });
   return total;
+}
+
+// Returns the excess that the pressure belongs to.
+float takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i,
+                float excess) {
+  if (state.pressure == nullptr) return excess;
+  excess = std::max(state.least[i], excess);
+  float kappa = excess;
+  if (state.tait) {
+    const float r = 1.0f + kappa, r3 = r * r * r;
+    kappa = (r3 * r3 * r - 1.0f) / 7.0f;
+  }
+  kappa = state.stiffness * (kappa + state.background);
+  state.pressure[i] = kappa;
+  state.scaled.xx[i] = volume * kappa * b.xx[i];
+  state.scaled.xy[i] = volume * kappa * b.xy[i];
+  state.scaled.yy[i] = volume * kappa * b.yy[i];
+  return excess;
 }
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
@@ -270,7 +296,10 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
     if (loop.wallX != nullptr) {
       gain += 2.0f * (loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallShare * loop.wallGain[i]);
     }
-    loop.next[i] = excess + loop.share[i] * gain;
+    loop.next[i] = takeState(loop.state, loop.correction, loop.volume, i, excess + loop.share[i] * gain);
+    if (loop.newX == nullptr) return;
+    loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(ux / kUnit)));
+    loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(uy / kUnit)));
   });
 }
 
@@ -303,7 +332,7 @@ void findCellRuns(const CellGrid& grid, std::span<const std::uint32_t> cells, co
 }
 
 const PairLoops& scalarPairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, force, rate};
+  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, force, rate, nullptr};
   return kLoops;
 }
 

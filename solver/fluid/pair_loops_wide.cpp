@@ -139,7 +139,7 @@ double divergence(const PairFrame& frame, const DivergenceLoop& loop, std::size_
 template <typename Kernel>
 void momentsOf(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
-  sweepCells<7, 0>(
+  sweepNear<By::RowsAndItself, 7, 0>(
       frame, begin, end, nullptr,
       [&](VF m, VF dx, VF dy, const VF*, const VF*, VF* sums) FROUDE_INLINE {
         VF px, py;
@@ -232,7 +232,7 @@ void viscosityOf(const PairFrame& frame, const ViscosityLoop& loop, std::size_t 
   const F f;
   const VF a = hn::Set(f, loop.a), b = hn::Set(f, loop.b * (Kernel::kSlope / Kernel::kShape));
   const float* const values[2] = {loop.vx, loop.vy};
-  sweepCells<2, 2>(
+  sweepNear<By::Rows, 2, 2>(
       frame, begin, end, values,
       [&](VF m, VF, VF, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
         const VF weight = hn::MulAdd(a, Kernel::shape(m), hn::Mul(b, Kernel::slope(m)));
@@ -254,7 +254,7 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
   const F f;
   VF totalX = hn::Zero(f), totalY = hn::Zero(f);
   const float* const values[4] = {loop.scaled.xx, loop.scaled.xy, loop.scaled.yy, loop.sign};
-  sweepCells<2, 3, 1>(
+  sweepNear<By::Rows, 2, 3, 1>(
       frame, begin, end, values,
       [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
         const VF slope = WendlandC2::slope(m);
@@ -273,11 +273,39 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
         takeMove(loop, i, count, moveX, moveY);
         storeSome(moveX, loop.shiftX + i, count);
         storeSome(moveY, loop.shiftY + i, count);
-        storeSome(hn::Add(loadSome(loop.ux + i, count), moveX), loop.ux + i, count);
-        storeSome(hn::Add(loadSome(loop.uy + i, count), moveY), loop.uy + i, count);
+        VF ux = hn::Add(loadSome(loop.ux + i, count), moveX), uy = hn::Add(loadSome(loop.uy + i, count), moveY);
+        if (loop.fallX != nullptr) {
+          ux = hn::Add(ux, loadSome(loop.fallX + i, count));
+          uy = hn::Add(uy, loadSome(loop.fallY + i, count));
+        }
+        storeSome(ux, loop.ux + i, count);
+        storeSome(uy, loop.uy + i, count);
+        if (loop.totalX == nullptr) return;
+        storeSome(hn::Add(loadSome(loop.totalX + i, count), moveX), loop.totalX + i, count);
+        storeSome(hn::Add(loadSome(loop.totalY + i, count), moveY), loop.totalY + i, count);
       });
   return {static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalX))),
           static_cast<double>(hn::GetLane(hn::SumOfLanes(f, totalY)))};
+}
+
+// Returns the excess that the pressure belongs to.
+HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i,
+                        std::uint32_t count, VF excess) {
+  if (state.pressure == nullptr) return excess;
+  const F f;
+  excess = hn::Max(loadSome(state.least + i, count), excess);
+  VF kappa = excess;
+  if (state.tait) {
+    const VF one = hn::Set(f, 1.0f), r = hn::Add(one, kappa), r3 = hn::Mul(r, hn::Mul(r, r));
+    kappa = hn::Mul(hn::Set(f, 1.0f / 7.0f), hn::MulSub(hn::Mul(r3, r3), r, one));
+  }
+  kappa = hn::Mul(hn::Set(f, state.stiffness), hn::Add(kappa, hn::Set(f, state.background)));
+  storeSome(kappa, state.pressure + i, count);
+  const VF scale = hn::Mul(hn::Set(f, volume), kappa);
+  storeSome(hn::Mul(scale, loadSome(b.xx + i, count)), state.scaled.xx + i, count);
+  storeSome(hn::Mul(scale, loadSome(b.xy + i, count)), state.scaled.xy + i, count);
+  storeSome(hn::Mul(scale, loadSome(b.yy + i, count)), state.scaled.yy + i, count);
+  return excess;
 }
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
@@ -285,7 +313,7 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
   const Matrices<const float>& b = loop.correction;
   const float* const values[8] = {loop.ux, loop.uy, loop.excess, loop.ax, loop.ay, b.xx, b.xy, b.yy};
   const VF slope = hn::Set(f, loop.slope), diffusion = hn::Set(f, 0.5f * loop.diffusion);
-  sweepCells<1, 5, 3>(
+  sweepNear<By::Rows, 1, 5, 3>(
       frame, begin, end, values,
       [&](VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) FROUDE_INLINE {
         const VF px = hn::MulAdd(own[5], dx, hn::Mul(own[6], dy)), py = hn::MulAdd(own[6], dx, hn::Mul(own[7], dy));
@@ -304,14 +332,30 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
           gain = hn::MulAdd(hn::Set(f, 2.0f), wall, gain);
         }
         const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, loadSome(loop.excess + i, count));
-        storeSome(next, loop.next + i, count);
+        storeSome(takeState(loop.state, b, loop.volume, i, count, next), loop.next + i, count);
+        if (loop.newX == nullptr) return;
+        storeMoved(frame.x + i, loadSome(loop.ux + i, count), loop.newX + i, count);
+        storeMoved(frame.y + i, loadSome(loop.uy + i, count), loop.newY + i, count);
       });
+}
+
+void near(const PairFrame& frame, std::uint8_t* rows, std::size_t begin, std::size_t end) {
+  for (std::size_t k = begin; k < end; ++k) {
+    const CellRuns& cell = frame.runs[k];
+    if (cell.kind == CellRuns::Kind::Other) continue;
+    UsualCell<0> c;
+    loadUsual<0>(frame, cell, nullptr, c);
+    if (cell.kind == CellRuns::Kind::Long) loadBeyond<0>(frame, cell, nullptr, c);
+    const std::uint32_t vectors = cell.kind == CellRuns::Kind::Long ? kVectors + kPerRun : kVectors;
+    for (std::uint32_t i = cell.first; i < cell.last; ++i) findNear(frame, cell, c, vectors, i, rows + kNearRow * i);
+  }
 }
 
 }  // namespace
 
 const PairLoops& widePairLoops() {
-  static constexpr PairLoops kLoops{density, divergence, moments, push, displace, viscosity, force, rate};
+  static constexpr PairLoops kLoops{
+      density, divergence, moments, push, displace, viscosity, force, rate, kNearPays ? near : nullptr};
   return kLoops;
 }
 

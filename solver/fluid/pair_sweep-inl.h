@@ -118,6 +118,7 @@ HWY_INLINE void loadUsual(const PairFrame& frame, const CellRuns& runs, const fl
     const VF dx = hn::ConvertTo(f, hn::Sub(hn::LoadU(n, frame.x + j), fromX));
     c.x[v] = hn::IfThenElse(inside, hn::Mul(dx, scale), far);
     c.y[v] = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::LoadU(n, frame.y + j), fromY)), scale);
+    HWY_UNROLL(8)
     for (int a = 0; a < kValues; ++a) c.value[a][v] = hn::IfThenElseZero(inside, hn::LoadU(f, values[a] + j));
   }
 }
@@ -208,6 +209,89 @@ HWY_INLINE void loadBeyond(const PairFrame& frame, const CellRuns& runs, const f
   }
 }
 
+// Rows of neighbours pay where the candidates of a cell are four registers at most, and a look-up in two of them is one
+// instruction.
+#if HWY_TARGET <= HWY_AVX3
+constexpr bool kNearPays = kLanes == kNearRow;
+#else
+constexpr bool kNearPays = false;
+#endif
+constexpr std::uint8_t kMany = 255;  // first of a row: its particle has more neighbours than the row has places
+
+// Where candidate i of a cell is itself among the candidates, counted along the registers.
+HWY_INLINE std::uint32_t placeOf(const CellRuns& cell, std::uint32_t i) {
+  std::uint32_t beyond = 0;
+  for (std::uint32_t r = 0; r < 3; ++r) {
+    const std::uint32_t k = i - cell.begin[r];
+    if (k < cell.count[r]) {
+      return k < CellRuns::kUsual ? r * CellRuns::kUsual + k : 3 * CellRuns::kUsual + beyond + k - CellRuns::kUsual;
+    }
+    beyond += cell.count[r] > CellRuns::kUsual ? cell.count[r] - CellRuns::kUsual : 0;
+  }
+  return 0;
+}
+
+// What is left of a row is filled with the particle itself: as a neighbour it adds nothing.
+HWY_INLINE void findNear(const PairFrame& frame, const CellRuns& cell, const UsualCell<0>& c, std::uint32_t vectors,
+                         std::uint32_t i, std::uint8_t* row) {
+  const F f;
+  const I n;
+  const VF scale = hn::Set(f, 0.5f * kUnit), reach = hn::Set(f, kNearReach * kNearReach);
+  const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), hn::Set(n, frame.x[cell.first]))), scale);
+  const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), hn::Set(n, frame.y[cell.first]))), scale);
+  const auto place = static_cast<std::int32_t>(placeOf(cell, i));
+  const VI self = hn::Set(n, place);
+  alignas(64) std::int32_t found[5 * CellRuns::kUsual];
+  std::size_t count = 0;
+  for (std::uint32_t v = 0; v < vectors; ++v) {
+    const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
+    const VI places = hn::Iota(n, static_cast<std::int32_t>(v * kLanes));
+    const auto inside = hn::RebindMask(n, hn::Lt(hn::MulAdd(dy, dy, hn::Mul(dx, dx)), reach));
+    const auto near = hn::AndNot(hn::Eq(places, self), inside);
+    hn::StoreU(hn::Compress(places, near), n, found + count);
+    count += hn::CountTrue(n, near);
+  }
+  for (std::uint32_t k = 0; k < kNearRow; k += kLanes) hn::StoreU(self, n, found + count + k);
+  if (count > kNearRow) found[0] = kMany;
+  const hn::Rebind<std::uint8_t, I> bytes;
+  for (std::uint32_t k = 0; k < kNearRow; k += kLanes) {
+    hn::StoreU(hn::DemoteTo(bytes, hn::Load(n, found + k)), bytes, row + k);
+  }
+}
+
+// A row as places in registers.
+struct Places {
+  VI at;
+  hn::Mask<F> upper;  // in the third register or the fourth
+};
+
+HWY_INLINE Places placesOf(const std::uint8_t* row) {
+  const F f;
+  const I n;
+  const hn::Rebind<std::uint8_t, I> bytes;
+  const VI at = hn::PromoteTo(n, hn::LoadU(bytes, row));
+  return {at, hn::RebindMask(f, hn::Gt(at, hn::Set(n, 2 * static_cast<std::int32_t>(kLanes) - 1)))};
+}
+
+// Values of a cell's candidates at these places. (Highway of Debian 12 has no look-up in two registers.)
+HWY_INLINE VF pick(const VF* v, const Places& places, bool fourth) {
+#if HWY_TARGET <= HWY_AVX3
+  const __m512 lower = _mm512_permutex2var_ps(v[0].raw, places.at.raw, v[1].raw);
+  if (!fourth) return VF{_mm512_mask_permutexvar_ps(lower, places.upper.raw, places.at.raw, v[2].raw)};
+  const __m512 upper = _mm512_permutex2var_ps(v[2].raw, places.at.raw, v[3].raw);
+  return VF{_mm512_mask_blend_ps(places.upper.raw, lower, upper)};
+#else
+  (void)places;
+  (void)fourth;
+  return v[0];
+#endif
+}
+
+HWY_INLINE hn::Mask<F> notItself(const Places& places, const CellRuns& cell, std::uint32_t i) {
+  const VI self = hn::Set(I(), static_cast<std::int32_t>(placeOf(cell, i)));
+  return hn::Not(hn::RebindMask(F(), hn::Eq(places.at, self)));
+}
+
 // Any other cell: runs of any number and length, seams, candidates behind walls. One particle; vector(dx, dy, m, j,
 // live) for each vector of candidates.
 template <typename Vector>
@@ -242,9 +326,10 @@ HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uin
 // half spacings from candidate to particle, m = max(0, 1 − q²/4), 0 in lanes without a visible neighbour, own and other
 // the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums
 // of up to kLanes particles from i on, one a lane.
-template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
-HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
-                           const Add& add, const Finish& finish) {
+enum class By { Candidates, Rows, RowsAndItself };
+template <int kSums, int kValues, int kOwn, By kBy, typename Add, typename Finish>
+HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
+                         const Add& add, const Finish& finish) {
   const F f;
   const I n;
   const VF one = hn::Set(f, 1.0f), scale = hn::Set(f, 0.5f * kUnit);
@@ -262,16 +347,20 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
     }
     for (std::uint32_t r = 0; r < filled; r += kLanes) {
       VF sums[kSums];
+      HWY_UNROLL(8)
       for (int s = 0; s < kSums; ++s) sums[s] = hn::Load(f, total[s] + r);
       finish(last - filled + r, filled - r, sums);
     }
     filled = 0;
   };
   auto begun = [&](std::uint32_t i, VF* own, VF* sums) FROUDE_INLINE {
+    HWY_UNROLL(8)
     for (int a = 0; a < kValues + kOwn; ++a) own[a] = hn::Set(f, values[a][i]);
+    HWY_UNROLL(8)
     for (int s = 0; s < kSums; ++s) sums[s] = hn::Zero(f);
   };
   auto done = [&](std::uint32_t i, const VF* sums) FROUDE_INLINE {
+    HWY_UNROLL(8)
     for (int s = 0; s < kSums; ++s) hn::Store(sums[s], f, rows[s][filled]);
     if (++filled == kRows) finishRows(i + 1);
   };
@@ -282,10 +371,29 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
       const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), fromX)), scale);
       const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), fromY)), scale);
       begun(i, own, sums);
+      if constexpr (kBy != By::Candidates) {
+        const std::uint8_t* row = frame.near + kNearRow * i;
+        if (HWY_LIKELY(row[0] != kMany)) {
+          const Places places = placesOf(row);
+          const bool fourth = vectors > kVectors;
+          const VF dx = hn::Sub(xi, pick(c.x, places, fourth)), dy = hn::Sub(yi, pick(c.y, places, fourth));
+          VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
+          if constexpr (kBy == By::RowsAndItself) m = hn::IfThenElseZero(notItself(places, cell, i), m);
+          HWY_UNROLL(8)
+          for (int a = 0; a < kValues; ++a) other[a] = pick(c.value[a], places, fourth);
+          add(m, dx, dy, own, other, sums);
+          if constexpr (kBy == By::RowsAndItself) {
+            add(hn::IfThenElseZero(hn::FirstN(f, 1), one), hn::Zero(f), hn::Zero(f), own, other, sums);
+          }
+          done(i, sums);
+          continue;
+        }
+      }
       HWY_UNROLL(16)
       for (std::uint32_t v = 0; v < vectors; ++v) {
         const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
         const VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
+        HWY_UNROLL(8)
         for (int a = 0; a < kValues; ++a) other[a] = c.value[a][v];
         add(m, dx, dy, own, other, sums);
       }
@@ -309,6 +417,7 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
       for (std::uint32_t i = cell.first; i < cell.last; ++i) {
         begun(i, own, sums);
         forEachVector(frame, runs, i, [&](VF dx, VF dy, VF m, std::uint32_t j, auto inside) FROUDE_INLINE {
+          HWY_UNROLL(8)
           for (int a = 0; a < kValues; ++a) other[a] = hn::IfThenElseZero(inside, hn::LoadU(f, values[a] + j));
           add(m, dx, dy, own, other, sums);
         });
@@ -316,6 +425,24 @@ HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_
       }
     }
     if (k + 1 == end && filled > 0) finishRows(cell.last);
+  }
+}
+
+template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
+HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
+                           const Add& add, const Finish& finish) {
+  sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish);
+}
+
+// As `sweepCells`, over the rows of neighbours where there are any. By::Rows is for sums to which a particle adds
+// nothing where it is its own neighbour.
+template <By kBy, int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
+HWY_INLINE void sweepNear(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
+                          const Add& add, const Finish& finish) {
+  if (kNearPays && frame.near != nullptr) {
+    sweepAll<kSums, kValues, kOwn, kNearPays ? kBy : By::Candidates>(frame, begin, end, values, add, finish);
+  } else {
+    sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish);
   }
 }
 

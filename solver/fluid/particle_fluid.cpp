@@ -240,7 +240,17 @@ PairFrame ParticleFluid::frame() const {
           domain_.periodicX ? lattice::coordinate(period.x()) : 0,
           domain_.periodicY ? lattice::coordinate(period.y()) : 0,
           walls_.hidden(),
-          settings_.kernel};
+          settings_.kernel,
+          near_.empty() ? nullptr : near_.data()};
+}
+
+void ParticleFluid::findNear(const StepContext& context) {
+  const PairLoops& loops = pairLoops(context.simd);
+  if (loops.near == nullptr) return;
+  near_.resize(kNearRow * grid_.size());
+  const PairFrame pairs = frame();
+  parallelFor(occupied_.size(), kCellBlock,
+              [&](std::size_t begin, std::size_t end) { loops.near(pairs, near_.data(), begin, end); });
 }
 
 DensityLoop ParticleFluid::densityLoop(float* density, float* diagonal, const PressureUpdate& update) const {

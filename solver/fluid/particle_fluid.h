@@ -60,6 +60,8 @@ class ParticleFluid : public FluidModel {
   void runDisplacement(const StepContext& context, const float* pressure, float* kappa, bool asVelocity = true);
   /// What a nozzle carries goes back to where it was predicted; what it was to move by is booked as velocity, or not.
   void holdCarried(bool asVelocity);
+  /// For methods that use it: fills `near_`.
+  void findNear(const StepContext& context);
   /// For methods that use it: fills `arrangement_`, and by particle the density Σ W + λ and Σ|∇W|².
   void findArrangement(const StepContext& context, float* density, float* squares);
   /// For methods that use it: fills `wallGain_` with what the walls' own motion adds to λ in a time.
@@ -93,6 +95,7 @@ class ParticleFluid : public FluidModel {
   AlignedArray<float> shiftX_, shiftY_, solvedX_, solvedY_, kappa_, change_, target_, diagonal_;
   Arrangement arrangement_;
   AlignedArray<float> wallGain_;
+  AlignedArray<std::uint8_t> near_;  // rows of neighbours for the loops that use them; empty: none
   AlignedArray<float> velocityX_, velocityY_, smoothX_, smoothY_;  // [m/s]
   double largestPressure_ = 0.0;  // |p/ρ| at the start of a sub-step, at its end once it is judged [m²/s²]
   struct Carried {

@@ -63,10 +63,11 @@ StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gra
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   for (AlignedArray<float>* a :
-       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &wayX_, &wayY_, &share_, &sign_}) {
+       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &least_, &share_, &sign_}) {
     a->resize(pool.size());
   }
   const bool fresh = soundSpeed_ == 0.0;
+  findNear(context);
   findArrangement(context, nextExcess_.data(), diagonal_.data());
   findWallGain(context, context.dt);
   chooseSoundSpeed(context, pool);
@@ -75,11 +76,10 @@ void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
   start(context, pool, steps, fresh);
   bodies_.startFrom({wallGain_.data(), pool.size()});
   if (fresh) findStartPressure(context);
+  takePressures(true);
   for (int k = 0; k < steps; ++k) {
-    takePressures(true);
     kick(context, steps);
-    compress(context, moveX_.data(), moveY_.data(), def_.compressible.densityDiffusion, 1.0 / steps);
-    drift();
+    compressAndDrift(context, steps, k + 1 == steps);
   }
   finish(context, pool, steps);
   stats.sweeps = steps;
@@ -123,7 +123,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   const double dt = context.dt / steps, perUnit = dt / unit_;
   stiffness_ = static_cast<float>(soundSpeed_ * soundSpeed_ * perUnit * perUnit);
   background_ = static_cast<float>(def_.compressible.backgroundPressure / (def_.density * soundSpeed_ * soundSpeed_));
-  constexpr auto kUnits = static_cast<float>(lattice::kUnitsPerSpacing);
+  const double perSpacing = 1.0 / unit_;
   const bool open = arrangement_.hasSurface();
   if (open) background_ = 0.0f;
   taken_ = Vec2(0.0, 0.0);
@@ -136,12 +136,11 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       moveX_[i] = static_cast<float>((vx[i] - context.dt * g.x()) * perUnit);
       moveY_[i] = static_cast<float>((vy[i] - context.dt * g.y()) * perUnit);
       // Back from where it was predicted to where it is.
-      wayX_[i] = static_cast<float>(-context.dt / unit_ * vx[i]);
-      wayY_[i] = static_cast<float>(-context.dt / unit_ * vy[i]);
-      latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(wayX_[i] * kUnits)));
-      latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(wayY_[i] * kUnits)));
+      latticeX_[i] = lattice::coordinate((x[i] - domain_.box.min.x()) * perSpacing);
+      latticeY_[i] = lattice::coordinate((y[i] - domain_.box.min.y()) * perSpacing);
       excess_[i] = density[i] > 0.0f ? density[i] - 1.0f : 0.0f;
       if (!arrangement_.atSurface(i)) excess_[i] += back * (nextExcess_[i] - 1.0f - excess_[i]);
+      least_[i] = arrangement_.atSurface(i) ? 0.0f : -kNever;
       sign_[i] = open && arrangement_.inside(i) && excess_[i] < 0.0f ? -1.0f : 1.0f;
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
@@ -208,8 +207,10 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
     takePressures(false);
     std::copy_n(fallX_.begin(), n, velocityX_.begin());
     std::copy_n(fallY_.begin(), n, velocityY_.begin());
-    accelerate(context, velocityX_.data(), velocityY_.data(), nullptr);
-    compress(context, velocityX_.data(), velocityY_.data(), 0.0, 0.0);
+    accelerate(context, forceLoop(velocityX_.data(), velocityY_.data()));
+    RateLoop loop = rateLoop(velocityX_.data(), velocityY_.data());
+    loop.wallShare = 0.0f;
+    compress(context, loop);
     const double error = parallelSum(n, [&](std::size_t begin, std::size_t end) {
       double part = 0.0;
       for (std::size_t i = begin; i < end; ++i) {
@@ -262,18 +263,22 @@ void Wcsph::takePressures(bool byEquation) {
 }
 
 // To `shift` and on top of u what the pressures do.
-void Wcsph::accelerate(const StepContext& context, float* ux, float* uy, float* kappa) {
-  const ForceLoop loop{change_.data(),
-                       sign_.data(),
-                       {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()},
-                       walls_.any() ? walls_.gradientX() : nullptr,
-                       walls_.gradientY(),
-                       walls_.tangent(),
-                       shiftX_.data(),
-                       shiftY_.data(),
-                       ux,
-                       uy,
-                       kappa};
+ForceLoop Wcsph::forceLoop(float* ux, float* uy) {
+  ForceLoop loop;
+  loop.pressure = change_.data();
+  loop.sign = sign_.data();
+  loop.scaled = {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()};
+  loop.wallX = walls_.any() ? walls_.gradientX() : nullptr;
+  loop.wallY = walls_.gradientY();
+  loop.tangent = walls_.tangent();
+  loop.shiftX = shiftX_.data();
+  loop.shiftY = shiftY_.data();
+  loop.ux = ux;
+  loop.uy = uy;
+  return loop;
+}
+
+void Wcsph::accelerate(const StepContext& context, const ForceLoop& loop) {
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
   pairSums_.resize(blockCount(occupied_.size(), kCellBlock));
@@ -284,41 +289,42 @@ void Wcsph::accelerate(const StepContext& context, float* ux, float* uy, float* 
 }
 
 void Wcsph::kick(const StepContext& context, int steps) {
-  accelerate(context, moveX_.data(), moveY_.data(), kappa_.data());
+  ForceLoop loop = forceLoop(moveX_.data(), moveY_.data());
+  loop.kappa = kappa_.data();
+  loop.fallX = fallX_.data();
+  loop.fallY = fallY_.data();
+  loop.totalX = solvedX_.data();
+  loop.totalY = solvedY_.data();
+  accelerate(context, loop);
   for (Carried& c : carried_) {
     const std::uint32_t i = c.particle;
     c.spared += steps * Vec2(static_cast<double>(shiftX_[i]), static_cast<double>(shiftY_[i]));
     moveX_[i] -= shiftX_[i];
     moveY_[i] -= shiftY_[i];
-    shiftX_[i] = shiftY_[i] = 0.0f;
+    shiftX_[i] = shiftY_[i] = solvedX_[i] = solvedY_[i] = 0.0f;
   }
-  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      moveX_[i] += fallX_[i];
-      moveY_[i] += fallY_[i];
-      solvedX_[i] += shiftX_[i];
-      solvedY_[i] += shiftY_[i];
-    }
-  });
   bodies_.follow(kappa_.data(), steps);
 }
 
-void Wcsph::compress(const StepContext& context, const float* ux, const float* uy, double diffusion, double wallShare) {
-  const RateLoop loop{ux,
-                      uy,
-                      excess_.data(),
-                      shiftX_.data(),
-                      shiftY_.data(),
-                      arrangement_.correction(),
-                      static_cast<float>(volume_),
-                      -1.0f / stiffness_,
-                      static_cast<float>(2.0 * diffusion) * std::sqrt(stiffness_),
-                      walls_.any() ? walls_.gradientX() : nullptr,
-                      walls_.gradientY(),
-                      bodies_.answered(),
-                      static_cast<float>(wallShare),
-                      share_.data(),
-                      nextExcess_.data()};
+RateLoop Wcsph::rateLoop(const float* ux, const float* uy) {
+  RateLoop loop;
+  loop.ux = ux;
+  loop.uy = uy;
+  loop.excess = excess_.data();
+  loop.ax = shiftX_.data();
+  loop.ay = shiftY_.data();
+  loop.correction = arrangement_.correction();
+  loop.volume = static_cast<float>(volume_);
+  loop.slope = -1.0f / stiffness_;
+  loop.wallX = walls_.any() ? walls_.gradientX() : nullptr;
+  loop.wallY = walls_.gradientY();
+  loop.wallGain = bodies_.answered();
+  loop.share = share_.data();
+  loop.next = nextExcess_.data();
+  return loop;
+}
+
+void Wcsph::compress(const StepContext& context, const RateLoop& loop) {
   const PairFrame pairs = frame();
   const PairLoops& loops = pairLoops(context.simd);
   parallelFor(occupied_.size(), kCellBlock,
@@ -326,16 +332,28 @@ void Wcsph::compress(const StepContext& context, const float* ux, const float* u
   excess_.swap(nextExcess_);
 }
 
-void Wcsph::drift() {
-  constexpr auto kUnits = static_cast<float>(lattice::kUnitsPerSpacing);
-  parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      wayX_[i] += moveX_[i];
-      wayY_[i] += moveY_[i];
-      latticeX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(moveX_[i] * kUnits)));
-      latticeY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(moveY_[i] * kUnits)));
-    }
-  });
+// And all that the next acoustic step begins with: pressures and places.
+void Wcsph::compressAndDrift(const StepContext& context, int steps, bool last) {
+  RateLoop loop = rateLoop(moveX_.data(), moveY_.data());
+  loop.diffusion = static_cast<float>(2.0 * def_.compressible.densityDiffusion) * std::sqrt(stiffness_);
+  loop.wallShare = static_cast<float>(1.0 / steps);
+  loop.newX = nextX_.data();
+  loop.newY = nextY_.data();
+  if (!last) {
+    loop.state = {least_.data(),  stiffness_,
+                  background_,    def_.compressible.equation == EquationOfState::Tait,
+                  change_.data(), {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()}};
+  }
+  compress(context, loop);
+  latticeX_.swap(nextX_);
+  latticeY_.swap(nextY_);
+  if (!last) quietFilms();
+}
+
+// A film bears nothing.
+void Wcsph::quietFilms() {
+  walls_.forEachFilm(
+      [&](std::uint32_t i) { change_[i] = arrangement_.xx[i] = arrangement_.xy[i] = arrangement_.yy[i] = 0.0f; });
 }
 
 // What counts as velocity is in `solved`, the way in `shift`: away from where neighbours are nearer as well, in
@@ -347,14 +365,20 @@ void Wcsph::finish(const StepContext& context, ParticlePool& pool, int steps) {
   giveBack();
   const float way = std::min(kMostWay, static_cast<float>(2.0 * context.dt / unit_ * flowSpeed_));
   const float even = kEven * way, astray = kStray * way;
+  const double perSpacing = 1.0 / unit_;
+  // From where it was predicted to where the acoustic steps have brought it.
+  auto drifted = [&](double predicted, double low, std::int32_t now) {
+    return static_cast<float>(lattice::difference(now, lattice::coordinate((predicted - low) * perSpacing))) *
+           static_cast<float>(1.0 / lattice::kUnitsPerSpacing);
+  };
   const auto moment = std::bit_cast<std::uint64_t>(context.time);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       solvedX_[i] *= count;
       solvedY_[i] *= count;
       kappa_[i] *= count;
-      shiftX_[i] = wayX_[i];
-      shiftY_[i] = wayY_[i];
+      shiftX_[i] = drifted(predictedX_[i], domain_.box.min.x(), latticeX_[i]);
+      shiftY_[i] = drifted(predictedY_[i], domain_.box.min.y(), latticeY_[i]);
       density[i] = 1.0f + excess_[i];
       if (!arrangement_.closed(i)) continue;
       const float sx = arrangement_.skewX[i] + (walls_.any() ? walls_.gradientX()[i] : 0.0f);
@@ -389,6 +413,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 10 * moveX_.capacity() * sizeof(float); }
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float); }
 
 }  // namespace froude

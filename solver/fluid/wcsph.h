@@ -30,10 +30,13 @@ class Wcsph final : public ParticleFluid {
   void findStartPressure(const StepContext& context);
   bool sweepStartPressure(const StepContext& context);
   void takePressures(bool byEquation);
-  void accelerate(const StepContext& context, float* ux, float* uy, float* kappa);
+  ForceLoop forceLoop(float* ux, float* uy);
+  RateLoop rateLoop(const float* ux, const float* uy);
+  void accelerate(const StepContext& context, const ForceLoop& loop);
   void kick(const StepContext& context, int steps);
-  void compress(const StepContext& context, const float* ux, const float* uy, double diffusion, double wallShare);
-  void drift();
+  void compress(const StepContext& context, const RateLoop& loop);
+  void compressAndDrift(const StepContext& context, int steps, bool last);
+  void quietFilms();
   void finish(const StepContext& context, ParticlePool& pool, int steps);
 
   double soundSpeed_ = 0.0;                      // c [m/s]; 0 until the first sub-step
@@ -43,7 +46,7 @@ class Wcsph final : public ParticleFluid {
   AlignedArray<float> excess_, nextExcess_;      // ρ/ρ0 − 1
   AlignedArray<float> moveX_, moveY_;            // velocity, as displacement in an acoustic step
   AlignedArray<float> fallX_, fallY_;            // gravity's share of that in an acoustic step
-  AlignedArray<float> wayX_, wayY_;              // from where it was predicted
+  AlignedArray<float> least_;                    // ρ' that a particle may have: 0 at a free surface
   AlignedArray<float> sign_;                     // −1 where differences of pressure are felt, else 1
   std::vector<std::array<double, 2>> pairSums_;  // by task
   Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]
