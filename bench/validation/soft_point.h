@@ -1,11 +1,13 @@
 // Points of soft bodies' material, read off a world.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <froude/solver/world.h>
 #include "scene/material_point.h"
+#include "scene/scene.h"
 
 namespace froude::validation {
 

@@ -5,6 +5,7 @@
 
 #include "validation/curve.h"
 #include "validation/soft_point.h"
+#include "validation/validation.h"
 
 namespace froude::validation {
 namespace {
