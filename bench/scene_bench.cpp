@@ -3,7 +3,7 @@
 //   scene_bench [--threads N] [--until SECONDS] [--runs N] [--set PATH=VALUE]... [--rows FILE] SCENE.toml...
 //
 // Runs alternate (first scene, second, first, …), so that a machine that grows slower slows all of them. Building the
-// world is not timed. A row's item is a particle in one sub-step.
+// world is not timed. A row's item is a particle in one sub-step, of wcsph in one acoustic step, whose dt it states.
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
@@ -101,13 +101,17 @@ bool writeRow(const Options& options, const scene::Scene& scene, const Outcome& 
   const bool fresh = !std::ifstream(options.rows).good();
   std::ofstream out(options.rows, std::ios::app);
   if (fresh) out << "question,case,cpu,cores,commit,build,simd,threads,dt,ns_median,ns_best,error,runs\n";
-  const auto steps = static_cast<double>(o.ledger.particleSteps);
+  const bool acoustic = scene.world.fluid && scene.world.fluid->model == "wcsph";
+  const double substeps = static_cast<double>(o.ledger.substeps);
+  const double parts = acoustic ? static_cast<double>(o.ledger.sweeps) / substeps : 1.0;
+  const double steps = static_cast<double>(o.ledger.particleSteps) * parts;
   char numbers[160];
   std::snprintf(numbers, sizeof numbers, "%d,%.4g,%.4g,%.4g,%.3g,%zu", options.threads,
-                o.simulated / static_cast<double>(o.ledger.substeps), 1e9 * median(o.wall) / steps,
+                o.simulated / (substeps * parts), 1e9 * median(o.wall) / steps,
                 1e9 * *std::min_element(o.wall.begin(), o.wall.end()) / steps, o.ledger.maxDensityError, o.wall.size());
   char length[64];
-  std::snprintf(length, sizeof length, "%zu particles to %g s", o.particles, o.simulated);
+  std::snprintf(length, sizeof length, "%zu particles to %g s%s", o.particles, o.simulated,
+                acoustic ? ", acoustic steps of wcsph" : "");
   out << "scene,\"" << scene.name << ", " << length << "\",\"" << run::cpuName() << "\","
       << std::thread::hardware_concurrency() << ',' << FROUDE_COMMIT << ",release," << name(scene.world.simd) << ','
       << numbers << '\n';

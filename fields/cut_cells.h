@@ -59,6 +59,7 @@ struct CutPart {
 struct CutJoint {
   CutSide side = CutSide::Left;
   std::int32_t part = -1;  // that it opens to, in parts(); −1: the cell beyond is wholly open
+  std::int32_t edge = -1;  // that it is, in edges(); −1: it is between two main parts
   double length = 0.0;     // [of a cell's size]
 };
 

@@ -38,6 +38,7 @@ void CutList::build(const CutGrid& grid, std::span<const CutSource> sources) {
     while (tiles_[tile].key != cutTile(sources[c].key)) ++tile;
     if (cells[c].partCount > 0) joinCell(c, tile, sources);
   }
+  nameEdges();
 }
 
 void CutList::addCell(const CutSource& source) {
@@ -109,7 +110,7 @@ void CutList::joinCell(std::uint32_t c, std::size_t tile, std::span<const CutSou
     CutPart& part = parts[cell.part + p];
     part.joint = static_cast<std::uint32_t>(joints.size());
     for (const Pair& pair : pairs_) {
-      if (pair.own == p) joints.push_back({pair.side, pair.other, pair.length});
+      if (pair.own == p) joints.push_back({pair.side, pair.other, -1, pair.length});
     }
     part.jointCount = static_cast<std::uint32_t>(joints.size()) - part.joint;
   }
@@ -165,6 +166,22 @@ void CutList::addEdge(const CutCell& cell, const Pair& pair, bool listedBeyond) 
     const std::int32_t i = vertical ? wrapped(cell.i + 1, grid_.periodX) : cell.i;
     const std::int32_t j = vertical ? cell.j : wrapped(cell.j + 1, grid_.periodY);
     edges.push_back({i, j, vertical, own, -1, pair.length});
+  }
+}
+
+// Joints learn which edge they are, on both sides of it.
+void CutList::nameEdges() {
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const CutEdge& edge = edges[e];
+    auto name = [&](std::int32_t own, std::int32_t other, CutSide side) {
+      if (own < 0) return;
+      const CutPart& part = parts[static_cast<std::size_t>(own)];
+      for (std::uint32_t k = part.joint; k < part.joint + part.jointCount; ++k) {
+        if (joints[k].side == side && joints[k].part == other) joints[k].edge = static_cast<std::int32_t>(e);
+      }
+    };
+    name(edge.a, edge.b, edge.vertical ? CutSide::Right : CutSide::Top);
+    name(edge.b, edge.a, edge.vertical ? CutSide::Left : CutSide::Bottom);
   }
 }
 

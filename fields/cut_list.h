@@ -46,6 +46,7 @@ class CutList {
   void joinCell(std::uint32_t cell, std::size_t tile, std::span<const CutSource> sources);
   void pairSide(std::uint32_t cell, CutSide side, std::int32_t beyond, std::span<const CutSource> sources);
   void addPair(const Pair& pair);
+  void nameEdges();
   void addEdge(const CutCell& cell, const Pair& pair, bool listedBeyond);
 
   CutGrid grid_;

@@ -28,6 +28,7 @@ double snapped(double x) {
 void CutPieces::clear() {
   pieces_.clear();
   crossings_.clear();
+  leftmost_ = lowest_ = highest_ = 0;
 }
 
 void CutPieces::place(const CutGrid& grid, const CutOutline& outline) {
@@ -121,7 +122,14 @@ void CutPieces::sumCrossings() {
   std::sort(crossings_.begin(), crossings_.end(),
             [](const CutCrossing& a, const CutCrossing& b) { return a.key < b.key; });
   std::size_t kept = 0;
+  leftmost_ = lowest_ = std::numeric_limits<std::int32_t>::max();
+  highest_ = std::numeric_limits<std::int32_t>::min();
   for (const CutCrossing& crossing : crossings_) {
+    const auto j = static_cast<std::int32_t>(static_cast<std::uint32_t>(crossing.key >> 32) ^ 0x80000000u);
+    const auto i = static_cast<std::int32_t>(static_cast<std::uint32_t>(crossing.key) ^ 0x80000000u);
+    leftmost_ = std::min(leftmost_, i);
+    lowest_ = std::min(lowest_, j);
+    highest_ = std::max(highest_, j);
     const bool sameRow = kept > 0 && (crossings_[kept - 1].key >> 32) == (crossing.key >> 32);
     const std::int32_t before = sameRow ? crossings_[kept - 1].winding : 0;
     if (!(sameRow && crossings_[kept - 1].key == crossing.key)) ++kept;
@@ -131,6 +139,8 @@ void CutPieces::sumCrossings() {
 }
 
 std::int32_t CutPieces::windingAt(std::int32_t i, std::int32_t j) const {
+  // To the left of all of them, below or above. To the right the sum need not be 0: sides may be periodic.
+  if (i <= leftmost_ || j < lowest_ || j > highest_) return 0;
   const std::uint64_t key = crossingKey(i, j);
   const auto behind = std::lower_bound(crossings_.begin(), crossings_.end(), key,
                                        [](const CutCrossing& c, std::uint64_t k) { return c.key < k; });

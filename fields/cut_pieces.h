@@ -78,6 +78,7 @@ class CutPieces {
 
   std::vector<CutPiece> pieces_;
   std::vector<CutCrossing> crossings_;
+  std::int32_t leftmost_ = 0, lowest_ = 0, highest_ = 0;  // columns and rows of crossings
   std::vector<Vertex> vertices_;
 };
 

@@ -101,7 +101,7 @@ enum class EquationOfState : std::uint8_t { Linear, Tait };
 
 /// Keys of the weakly compressible model alone.
 struct CompressibleDef {
-  double support = 4.0;              // radius of a kernel, in spacings, 2 to 6
+  double support = 3.0;              // radius of a kernel, in spacings, 2 to 6
   double soundSpeed = 0.0;           // c [m/s]; 0: ten times the largest speed that is to be expected
   double densityDiffusion = 0.2;     // δ
   double artificialViscosity = 0.0;  // α (Monaghan): a kinematic viscosity of α·c·(support radius)/16

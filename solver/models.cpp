@@ -65,14 +65,16 @@ std::span<const ModelCard> modelCards() {
        "Weakly compressible SPH",
        "a fluid with a free surface that is a little elastic (sound at ten times the largest speed), walls exact for "
        "polygons, free-slip or no-slip, laminar viscosity",
-       "incompressibility, surface tension, tension at a free surface",
+       "incompressibility, surface tension, cavities",
        {"courant * support / v_max, courant = 0.2 unless set", "0.25 sqrt(support / g)",
+        "dx sqrt(0.3 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.6 for the largest",
         "acoustic: a sub-step is at most 64 steps of support / 2 / (c + v)",
         "0.125 (support / 2)^2 / viscosity; where that would halve the step or worse the velocities are solved for",
         "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
-       {"a fluid at rest over steps and corners moves at 4 % of sqrt(g depth); volumes wander by a per cent in ten "
-        "seconds, more where fewer than 40 spacings are deep",
-        "a free fluid in tension clumps and tears: the rotating square patch loses a tenth of its area",
+       {"a fluid at rest over steps and corners moves at 2 % of sqrt(g depth) where 20 spacings are deep, at half a "
+        "per "
+        "cent where 40 are",
+        "a free fluid in tension clumps: the rotating square patch loses three hundredths of its area",
         "a fluid that sways is noisy at its floor"},
        {"M. Antuono et al.: Free-surface flows solved by means of SPH schemes with numerical diffusive terms. Comput. "
         "Phys. Commun. 181, 2010",
@@ -120,10 +122,11 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
   // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 583 bytes a particle
-  // for pbf, 635 for dfsph, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes each. State columns, undo
-  // copy, scratch, and at a checkpoint its image in memory.
+  // for pbf, 635 for dfsph, 660 for wcsph, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes each. State
+  // columns, undo copy, scratch, and at a checkpoint its image in memory.
   constexpr std::size_t kBulletBytes = 240, kFieldBytes = 56'000'000;
-  const std::size_t fluidBytes = def.fluid && def.fluid->model == "dfsph" ? 640 : 590;
+  const std::string model = def.fluid ? def.fluid->model : "";
+  const std::size_t fluidBytes = model == "wcsph" ? 660 : model == "dfsph" ? 640 : 590;
   return kFieldBytes + fluidBytes * fluidParticles + kBulletBytes * bullets;
 }
 

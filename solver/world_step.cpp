@@ -170,7 +170,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
     ballistic->advance(context, *bullets, impulses, stats);
     events.finishSpecies();
   }
-  if (soft != nullptr) soft->advance(context, def.softSettings, impulses, stats);
+  if (soft != nullptr) soft->advance(context, def.softSettings, bodies, impulses, stats);
   explainLeaks(dt);
   finishForce(dt, stats);
   pushBodies(dt);

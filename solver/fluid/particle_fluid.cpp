@@ -37,8 +37,9 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
       volume_(latticeVolume(def.spacing / unit_, settings.kernel)),
       pressure_(pool.addColumn<float>("pressure", ColumnKind::State)),
       density_(pool.addColumn<float>("density", ColumnKind::State)),
-      walls_(unit_, latticeRecession(def.spacing / unit_, settings.kernel), settings.kernel,
-             {def.group, def.collidesWith}),
+      walls_(unit_,
+             settings.kernel == kernel::Kind::Blend ? latticeRecession(def.spacing / unit_, settings.kernel) : 0.0,
+             settings.kernel, {def.group, def.collidesWith}),
       tension_(def),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;

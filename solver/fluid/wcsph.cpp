@@ -11,7 +11,11 @@ namespace froude {
 namespace {
 
 // Measurements: docs/decisions/solver-wcsph.md.
-constexpr double kCourant = 0.2;    // of the support radius a sub-step
+constexpr double kCourant = 0.2;  // of the support radius a sub-step
+// Walls, gradients and cells stand still in a sub-step: κ of twice the typical and of the highest pressure, from which
+// a row of particles swings against them, and gains by it.
+constexpr double kTypicalStiffness = 0.3, kLargestStiffness = 0.6;
+constexpr float kLone = 0.5f;       // density below which nothing pulls at a particle
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
@@ -25,6 +29,7 @@ constexpr float kEven = 1.0f, kStray = 0.07f, kMostWay = 0.3f;
 // The start pressure: sweeps at most, times √N; their step, halved where they diverge; errors over the first one.
 constexpr double kStartSweeps = 40.0, kStartTolerance = 0.02, kDiverged = 1e2;
 constexpr float kStartStep = 0.6f, kLeastStartStep = 0.05f;
+constexpr float kProbe = 0.03f;         // way of the fastest along which its change of the rates is taken [units]
 constexpr float kInnerDiagonal = 0.5f;  // half of the largest eigenvalue of div grad inside a fluid
 
 // In [−1, 1)², from a particle's place in the order of the cells and the time: the same on any number of threads,
@@ -39,8 +44,14 @@ std::array<float, 2> stray(std::size_t i, std::uint64_t time) {
 
 }  // namespace
 
+double acousticStepAt(const FluidDef& def, double speed) {
+  const double sound = def.compressible.soundSpeed > 0.0 ? def.compressible.soundSpeed : speed / kMach;
+  return kAcoustic * supportOf(def) / kernel::kSupport / (sound + speed);
+}
+
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
-    : ParticleFluid(def, domain, pool, {kCourant, kInfinity, kInfinity, 0.0, kernel::Kind::WendlandC2}) {
+    : ParticleFluid(def, domain, pool,
+                    {kCourant, kTypicalStiffness, kLargestStiffness, 0.0, kernel::Kind::WendlandC2}) {
   if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of wcsph; pbf and dfsph have it");
   if (!(def.compressible.support >= 2.0 && def.compressible.support <= 6.0)) {
     throw Error("the support of wcsph is 2 to 6 spacings");
@@ -140,7 +151,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       latticeY_[i] = lattice::coordinate((y[i] - domain_.box.min.y()) * perSpacing);
       excess_[i] = density[i] > 0.0f ? density[i] - 1.0f : 0.0f;
       if (!arrangement_.atSurface(i)) excess_[i] += back * (nextExcess_[i] - 1.0f - excess_[i]);
-      least_[i] = arrangement_.atSurface(i) ? 0.0f : -kNever;
+      least_[i] = nextExcess_[i] < kLone ? 0.0f : -kNever;
       sign_[i] = open && arrangement_.inside(i) && excess_[i] < 0.0f ? -1.0f : 1.0f;
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
@@ -173,11 +184,47 @@ void Wcsph::findDiagonal() {
   });
 }
 
-// The pressures that a fluid has which is let go: those that take the divergence out of its acceleration. Without them
+// To `smoothY_`: by how much the rates of the densities change in an acoustic step because the particles move on with
+// the velocities that they have, −∇u:∇u; central differences along their ways. Of those at walls, which stand still in
+// it, 0.
+void Wcsph::findTurning(const StepContext& context) {
+  const std::size_t n = grid_.size();
+  std::fill_n(smoothY_.begin(), n, 0.0f);
+  if (!arrangement_.hasSurface()) return;  // nothing gives pressures their zero: the sweeps would run off
+  const auto fastest = static_cast<float>(parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
+    float most = 0.0f;
+    for (std::size_t i = begin; i < end; ++i) most = std::max(most, std::hypot(moveX_[i], moveY_[i]));
+    return static_cast<double>(most);
+  }));
+  if (fastest == 0.0f) return;
+  std::fill_n(share_.begin(), n, 1.0f);
+  for (const float side : {1.0f, -1.0f}) {
+    const float way = side * kProbe / fastest * static_cast<float>(lattice::kUnitsPerSpacing);
+    for (std::size_t i = 0; i < n; ++i) {
+      nextX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(way * moveX_[i])));
+      nextY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(way * moveY_[i])));
+      excess_[i] = 0.0f;
+    }
+    latticeX_.swap(nextX_);
+    latticeY_.swap(nextY_);
+    RateLoop loop = rateLoop(moveX_.data(), moveY_.data());
+    loop.wallShare = 0.0f;
+    compress(context, loop);
+    latticeX_.swap(nextX_);
+    latticeY_.swap(nextY_);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (walls_.any() && walls_.lambda()[i] > 0.0f) continue;
+      smoothY_[i] += side * 0.5f * fastest / kProbe * excess_[i];
+    }
+  }
+}
+
+// The pressures that a fluid has which is let go: those that keep the rates of its densities as they are. Without them
 // a tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
 void Wcsph::findStartPressure(const StepContext& context) {
   const std::size_t n = grid_.size();
   const float stiffness = std::exchange(stiffness_, 1.0f), background = std::exchange(background_, 0.0f);
+  findTurning(context);
   bool found = false;
   for (float step = kStartStep; !found && step > kLeastStartStep; step *= 0.5f) {
     for (std::size_t i = 0; i < n; ++i) share_[i] = step / std::max(diagonal_[i], kInnerDiagonal);
@@ -215,8 +262,7 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
       double part = 0.0;
       for (std::size_t i = begin; i < end; ++i) {
         const float before = nextExcess_[i];
-        float gain = excess_[i] - before;
-        if (arrangement_.atSurface(i)) gain = std::max(gain, -before);
+        const float gain = std::max(least_[i], excess_[i] + share_[i] * smoothY_[i]) - before;
         excess_[i] = before + gain + momentum * (before - last[i]);
         part += static_cast<double>(std::abs(gain));
         last[i] = before;
@@ -247,7 +293,7 @@ void Wcsph::takePressures(bool byEquation) {
   const auto volume = static_cast<float>(volume_);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (arrangement_.atSurface(i)) excess_[i] = std::max(0.0f, excess_[i]);
+      excess_[i] = std::max(least_[i], excess_[i]);
       float kappa = excess_[i];
       if (tait) {
         const float r = 1.0f + kappa, r3 = r * r * r;

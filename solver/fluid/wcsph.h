@@ -6,9 +6,14 @@
 // Eng. 315 (2017). What differs and why: docs/decisions/solver-wcsph.md.
 #pragma once
 
+#include <froude/base/api.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
 namespace froude {
+
+/// The acoustic step [s] where the fastest moves at `speed` > 0 [m/s] and sound at ten times that, or as defined. For
+/// predictions.
+FROUDE_API double acousticStepAt(const FluidDef& def, double speed);
 
 /// A sub-step is one set of cells and walls for a number of acoustic steps, each symplectic: velocities by the
 /// pressures, densities by these velocities, positions. The column "density" is what was integrated, not a sum.
@@ -27,6 +32,7 @@ class Wcsph final : public ParticleFluid {
   void findDiagonal();
   void limitStiffness();
   void giveBack();
+  void findTurning(const StepContext& context);
   void findStartPressure(const StepContext& context);
   bool sweepStartPressure(const StepContext& context);
   void takePressures(bool byEquation);
@@ -46,7 +52,7 @@ class Wcsph final : public ParticleFluid {
   AlignedArray<float> excess_, nextExcess_;      // ρ/ρ0 − 1
   AlignedArray<float> moveX_, moveY_;            // velocity, as displacement in an acoustic step
   AlignedArray<float> fallX_, fallY_;            // gravity's share of that in an acoustic step
-  AlignedArray<float> least_;                    // ρ' that a particle may have: 0 at a free surface
+  AlignedArray<float> least_;                    // ρ' that a particle may have: 0 for one that is alone
   AlignedArray<float> sign_;                     // −1 where differences of pressure are felt, else 1
   std::vector<std::array<double, 2>> pairSums_;  // by task
   Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]

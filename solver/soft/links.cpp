@@ -64,7 +64,8 @@ void correct(const Constraint<N>& c, const std::array<std::uint32_t, N>& nodes, 
 
 }  // namespace
 
-Links Links::rope(const TriangleMesh& mesh, double young, double thickness, double density) {
+Links Links::rope(const TriangleMesh& mesh, double young, double thickness, double density,
+                  std::span<const double> inverseMass) {
   Links links;
   const auto& p = mesh.points;
   double axial = 0.0, bending = 0.0;
@@ -76,7 +77,9 @@ Links Links::rope(const TriangleMesh& mesh, double young, double thickness, doub
   const double stiffness = young * thickness * thickness * thickness / 12.0;
   for (std::uint32_t k = 1; k + 1 < p.size(); ++k) {
     const Vec2 before = p[k] - p[k - 1], after = p[k + 1] - p[k];
-    const double along = 0.5 * (before.norm() + after.norm()), least = std::min(before.norm(), after.norm());
+    auto bends = [&](std::uint32_t i) { return inverseMass[i] > 0.0 || inverseMass[i + 1] > 0.0 ? 0.5 : 0.0; };
+    const double along = std::max(bends(k - 1) * before.norm() + bends(k) * after.norm(), 0.25 * after.norm());
+    const double least = std::min(before.norm(), after.norm());
     const double rest = std::atan2(cross(before, after), before.dot(after));
     links.angles_.push_back({k - 1, k, k + 1, rest, stiffness / along, 0.0});
     // A third of each point's mass, at least half a link's at the ends.

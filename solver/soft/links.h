@@ -15,7 +15,9 @@ namespace froude {
 class Links {
  public:
   /// A chain through all points in order: axial stiffness young·thickness, bending stiffness E I = young·thickness³/12.
-  static Links rope(const TriangleMesh& mesh, double young, double thickness, double density);
+  /// Between two held points (inverse mass 0) nothing bends: the second is the clamp.
+  static Links rope(const TriangleMesh& mesh, double young, double thickness, double density,
+                    std::span<const double> inverseMass);
   /// Springs along the edges and an area term in each triangle. On equilateral triangles the small-strain constants are
   /// μ, and λ where it is at least μ (ν ≥ 1/4); springs alone have λ = μ. Source: the triangular lattice,
   /// k = (8/3)·μ·√3/2 a spring, Ostoja-Starzewski 2002.

@@ -84,9 +84,10 @@ ShapeClusters::ShapeClusters(const std::vector<Vec2>& rest, const std::vector<do
   }
 }
 
-void ShapeClusters::findGoals(const double* x, const double* y) const {
+double ShapeClusters::findGoals(const double* x, const double* y) const {
   std::fill(goalX_.begin(), goalX_.end(), 0.0);
   std::fill(goalY_.begin(), goalY_.end(), 0.0);
+  double squares = 0.0;
   for (const Cluster& c : clusters_) {
     double cx = 0.0, cy = 0.0;
     for (std::uint32_t m = c.begin; m < c.end; ++m) {
@@ -118,39 +119,35 @@ void ShapeClusters::findGoals(const double* x, const double* y) const {
         mapY[b] += py[a] * inverse;
       }
     }
-    mapX[0] = kShare * mapX[0] + (1.0 - kShare) * cosine;
-    mapX[1] = kShare * mapX[1] - (1.0 - kShare) * sine;
-    mapY[0] = kShare * mapY[0] + (1.0 - kShare) * sine;
-    mapY[1] = kShare * mapY[1] + (1.0 - kShare) * cosine;
-    for (int b = 2; b < 5; ++b) {
-      mapX[b] *= kShare;
-      mapY[b] *= kShare;
-    }
     // The squares have a mean of their own; what it moves all by is taken out, or momentum would change.
     double meanX = 0.0, meanY = 0.0;
     for (std::uint32_t m = c.begin; m < c.end; ++m) {
-      for (int a = 2; a < 5; ++a) {
+      for (int a = 2; a < order; ++a) {
         meanX += members_[m].share * mapX[a] * members_[m].q[a];
         meanY += members_[m].share * mapY[a] * members_[m].q[a];
       }
     }
-    cx -= meanX / c.mass;
-    cy -= meanY / c.mass;
+    meanX /= c.mass;
+    meanY /= c.mass;
     for (std::uint32_t m = c.begin; m < c.end; ++m) {
       const Member& at = members_[m];
-      double gx = cx, gy = cy;
-      for (int a = 0; a < 5; ++a) {
+      double gx = cx - meanX, gy = cy - meanY;
+      for (int a = 0; a < order; ++a) {
         gx += mapX[a] * at.q[a];
         gy += mapY[a] * at.q[a];
       }
-      goalX_[at.node] += at.share * gx;
-      goalY_[at.node] += at.share * gy;
+      const double rx = cx + cosine * at.q[0] - sine * at.q[1], ry = cy + sine * at.q[0] + cosine * at.q[1];
+      goalX_[at.node] += at.share * (kShare * gx + (1.0 - kShare) * rx);
+      goalY_[at.node] += at.share * (kShare * gy + (1.0 - kShare) * ry);
+      const double ax = x[at.node] - gx, ay = y[at.node] - gy, bx = x[at.node] - rx, by = y[at.node] - ry;
+      squares += at.share * (kShare * (ax * ax + ay * ay) + (1.0 - kShare) * (bx * bx + by * by));
     }
   }
   for (std::size_t k = 0; k < mass_.size(); ++k) {
     goalX_[k] /= mass_[k];
     goalY_[k] /= mass_[k];
   }
+  return squares;
 }
 
 void ShapeClusters::project(double stiffness, double dtSquared, const NodeColumns& n) {
@@ -164,13 +161,7 @@ void ShapeClusters::project(double stiffness, double dtSquared, const NodeColumn
 }
 
 double ShapeClusters::energy(double stiffness, const double* x, const double* y) const {
-  findGoals(x, y);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < mass_.size(); ++k) {
-    const double dx = x[k] - goalX_[k], dy = y[k] - goalY_[k];
-    sum += 0.5 * stiffness * mass_[k] * (dx * dx + dy * dy);
-  }
-  return sum;
+  return 0.5 * stiffness * findGoals(x, y);
 }
 
 }  // namespace froude

@@ -22,7 +22,8 @@ class ShapeClusters {
   /// taken implicitly: x + s (goal − x)/(1 + s), s = stiffness·dtSquared.
   void project(double stiffness, double dtSquared, const NodeColumns& nodes);
   bool empty() const { return clusters_.empty(); }
-  /// Σ m stiffness/2 |x − goal|² [J/m]: energy of these springs.
+  /// Energy of these springs [J/m]: of each cluster to its rotated and to its quadratic goals, in their shares. As both
+  /// fit best, their variation does no work, and the springs' forces are the gradient of this.
   double energy(double stiffness, const double* x, const double* y) const;
   /// Half of the mean side of clusters [m].
   double radius() const { return radius_; }
@@ -39,7 +40,8 @@ class ShapeClusters {
     double inverse[2][2];    // of Σ m q qᵀ, linear part
     double quadratic[5][5];  // of Σ m q̃ q̃ᵀ; zero where there are too few points
   };
-  void findGoals(const double* x, const double* y) const;
+  // The share of goals that a point's clusters give it; returns Σ m |x − goal|², rotated and quadratic in their shares.
+  double findGoals(const double* x, const double* y) const;
 
   std::vector<Member> members_;
   std::vector<Cluster> clusters_;

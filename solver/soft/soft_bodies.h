@@ -7,6 +7,7 @@
 #include <froude/base/archive.h>
 #include <froude/particles/pool.h>
 #include <froude/solver/soft/soft_body.h>
+#include <froude/solver/soft/soft_pairs.h>
 #include <froude/solver/step_context.h>
 
 namespace froude {
@@ -49,7 +50,10 @@ class SoftBodies {
   /// Smallest distance of neighbours in any body [m].
   double spacing() const { return spacing_; }
   /// One sub-step. Particles meet fixed and scripted polygons, and free ones by what their motion is.
-  void advance(const StepContext& context, const SoftSettings& settings, ImpulseLedger& impulses, StepStats& stats);
+  /// Free bodies are pushed within the sub-step as if they were a part of it, and moved by that; their velocities are
+  /// to be changed by the impulses.
+  void advance(const StepContext& context, const SoftSettings& settings, BodySet& bodies, ImpulseLedger& impulses,
+               StepStats& stats);
 
   SoftSums sums() const;
   SoftSums sumsOf(std::size_t i) const;
@@ -62,9 +66,10 @@ class SoftBodies {
   void archive(Archive& a);
 
  private:
-  struct Touch {
+  // A point that met a free body, to be parted from it in order.
+  struct Meeting {
+    std::size_t point;
     int body;
-    Vec2 at, impulse, surface;  // [m], on the obstacle [kg·m/s per metre], [m/s]
   };
   // One part of the sub-step: shares [begin, end] of it.
   struct Part {
@@ -80,9 +85,17 @@ class SoftBodies {
   void inflate(std::size_t i);
   double strainEnergyOf(std::size_t i) const;
   void meetObstacles(const StepContext& context, const Part& part, std::size_t i);
+  void meetFreeBodies(const StepContext& context, const Part& part, std::size_t i);
+  void meetFree(const StepContext& context, const Part& part, std::size_t i, const Meeting& meeting);
+  void finish(const StepContext& context, const Part& part, std::size_t i);
+  void tear(std::size_t i);
+  void report(ImpulseLedger& impulses, StepStats& stats);
+  template <typename Visit>
+  void forEachBody(Visit&& visit);
+  SoftColumns columns();
   void meet(const StepContext& context, const Part& part, std::size_t i, std::size_t node);
   void damp(std::size_t i, double dt);
-  void book(const StepContext& context, double dt, ImpulseLedger& impulses, StepStats& stats);
+  void book(ImpulseLedger& impulses);
 
   ParticlePool pool_;
   ColumnId<double> mass_;
@@ -92,7 +105,11 @@ class SoftBodies {
   double frequencySquared_ = 0.0, spacing_ = kInfinity, totalMass_ = 0.0;
   // Work columns: position, velocity, force, position at the start of the part and of the sub-step.
   AlignedArray<double> x_, y_, vx_, vy_, fx_, fy_, fromX_, fromY_, startX_, startY_, inverseMass_, free_;
-  std::vector<std::vector<Touch>> touches_;                           // by body, of one part
+  std::vector<std::vector<PairTouch>> touches_;  // by body, of one part
+  std::vector<std::vector<Meeting>> meetings_;   // by body, of one part
+  std::vector<PairTouch> pairTouches_;           // of one part
+  SoftPairs pairs_;
+  PushedBodies pushed_;
   std::vector<Vec2> gravityImpulse_, touchImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
   std::vector<double> gravityWork_;                                   // by body [J/m]
 };

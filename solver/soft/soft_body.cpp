@@ -113,7 +113,7 @@ void SoftBody::compile() {
       frequencySquared = elements.stiffest * lame.waveModulus() / def.density;
       break;
     case SoftModel::Rope:
-      links = Links::rope(mesh, def.young, def.thickness, def.density);
+      links = Links::rope(mesh, def.young, def.thickness, def.density, inverseMass);
       frequencySquared = links.frequencySquared();
       break;
     case SoftModel::Springs:
@@ -127,6 +127,19 @@ void SoftBody::compile() {
       frequencySquared = matching;
       break;
   }
+}
+
+int SoftBody::tornEdges(std::size_t triangle) const {
+  int torn = 0;
+  for (std::size_t k = 0; k < 3 && isStrain(); ++k) torn += elements.area[elements.ofEdge[3 * triangle + k]] == 0.0;
+  return torn;
+}
+
+std::size_t SoftBody::tornTriangles() const {
+  std::size_t count = 0;
+  if (!isStrain() || def.strainLimit == 0.0) return 0;
+  for (std::size_t t = 0; t < def.mesh->triangles.size(); ++t) count += tornEdges(t) >= 2 ? 1 : 0;
+  return count;
 }
 
 }  // namespace froude

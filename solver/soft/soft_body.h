@@ -16,7 +16,9 @@ struct SoftBody {
   /// Throws Error for a definition that cannot work.
   explicit SoftBody(SoftDef definition);
 
-  void compile();
+  /// Edges of the triangle whose piece of strain gave way.
+  int tornEdges(std::size_t triangle) const;
+  std::size_t tornTriangles() const;
   std::size_t points() const { return def.mesh->points.size(); }
   bool isStrain() const { return def.model == SoftModel::NeoHookean || def.model == SoftModel::StVenantKirchhoff; }
   StrainModel strainModel() const {
@@ -35,7 +37,9 @@ struct SoftBody {
   std::vector<std::array<std::uint32_t, 2>> inflated;
   double frequencySquared = 0.0;  // no angular frequency² of the body is above it [1/s²]
   bool anyPinned = false;
-  std::vector<std::uint32_t> torn;  // triangles that gave way, in that order
+
+ private:
+  void compile();
 };
 
 }  // namespace froude

@@ -67,10 +67,14 @@ void SoftBodies::strainOf(std::size_t i, std::vector<double>& values) const {
     const double mean = 0.5 * std::hypot(f00 + f11, f10 - f01), half = 0.5 * std::hypot(f00 - f11, f10 + f01);
     values.push_back(std::max(std::abs(mean + half - 1.0), std::abs(mean - half - 1.0)));
   }
-  for (const std::uint32_t t : b.torn) values[t] = std::nan("");
+  // Torn: two of a triangle's edges or more have given way.
+  if (b.def.strainLimit == 0.0) return;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    if (b.tornEdges(t) >= 2) values[t] = std::nan("");
+  }
 }
 
-std::size_t SoftBodies::tornOf(std::size_t i) const { return body(i).links.torn() + body(i).torn.size(); }
+std::size_t SoftBodies::tornOf(std::size_t i) const { return body(i).links.torn() + body(i).tornTriangles(); }
 
 SoftSums SoftBodies::sums() const {
   SoftSums all;
@@ -127,10 +131,32 @@ void SoftBodies::damp(std::size_t i, double dt) {
   }
 }
 
+// Pieces give way that are stretched too far.
+void SoftBodies::tear(std::size_t i) {
+  SoftBody& b = *bodies_[i];
+  if (b.def.strainLimit == 0.0 || !b.clusters.empty()) return;
+  const double *x = pool_.x().data() + first_[i], *y = pool_.y().data() + first_[i];
+  if (!b.links.empty()) {
+    b.links.tear(b.def.strainLimit, x, y);
+    return;
+  }
+  for (std::size_t e = 0; e < b.elements.size(); ++e) {
+    if (b.elements.area[e] > 0.0 && stretchOf(b.elements, e, x, y) > 1.0 + b.def.strainLimit) b.elements.area[e] = 0.0;
+  }
+}
+
 void SoftBodies::archive(Archive& a) {
   const std::size_t rows = a.count("rows", pool_.size());
   if (rows != pool_.size()) throw Error("the saved world has other soft bodies");
   pool_.archive(a);
+  for (std::size_t i = 0; i < count(); ++i) {
+    SoftBody& b = *bodies_[i];
+    if (b.def.strainLimit == 0.0) continue;
+    a.beginSection("soft" + std::to_string(i));
+    a.array("areas", b.elements.area);
+    b.links.archive(a);
+    a.endSection();
+  }
 }
 
 }  // namespace froude

@@ -10,7 +10,10 @@
 namespace froude {
 namespace {
 
+constexpr std::uint32_t kNone = 0xFFFFFFFFu;
+
 struct Element {
+  std::array<std::uint32_t, 2> sides{kNone, kNone};  // 3 · triangle + side
   std::array<std::uint32_t, 4> node{};
   std::array<Vec2, 4> b{Vec2(0, 0), Vec2(0, 0), Vec2(0, 0), Vec2(0, 0)};
   std::array<double, 4> share{};  // of the nodes in the area
@@ -67,13 +70,13 @@ std::vector<Element> trianglePieces(const TriangleMesh& mesh) {
 
 std::vector<Element> edgePieces(const TriangleMesh& mesh) {
   struct Side {
-    std::uint32_t low, high, triangle;
+    std::uint32_t low, high, triangle, number;
   };
   std::vector<Side> sides;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), t});
+      sides.push_back({std::min(a, b), std::max(a, b), t, 3 * t + static_cast<std::uint32_t>(k)});
     }
   }
   std::stable_sort(sides.begin(), sides.end(),
@@ -82,10 +85,10 @@ std::vector<Element> edgePieces(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < sides.size();) {
     Element e;
     std::size_t j = i;
-    for (; j < sides.size() && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j) {
+    for (; j < std::min(sides.size(), i + 2) && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j) {
       blend(mesh, mesh.triangles[sides[j].triangle], 1.0 / 3.0, e);
+      e.sides[j - i] = sides[j].number;
     }
-    FROUDE_ASSERT(j - i <= 2);
     elements.push_back(e);
     i = j;
   }
@@ -142,12 +145,17 @@ StrainElements compileStrain(const TriangleMesh& mesh, StrainPieces pieces, std:
   std::uint32_t count = 0;
   const std::vector<std::uint32_t> colors = colorsOf(elements, mesh.points.size(), count);
   StrainElements out;
+  out.ofEdge.resize(3 * mesh.triangles.size(), kNone);
   Element none;
   none.node.fill(static_cast<std::uint32_t>(mesh.points.size()));
   for (std::uint32_t c = 0; c < count; ++c) {
     out.colors.push_back(out.size());
     for (std::size_t e = 0; e < elements.size(); ++e) {
-      if (colors[e] == c) append(out, elements[e], inverseMass);
+      if (colors[e] != c) continue;
+      for (const std::uint32_t side : elements[e].sides) {
+        if (side != kNone) out.ofEdge[side] = static_cast<std::uint32_t>(out.size());
+      }
+      append(out, elements[e], inverseMass);
     }
     while (out.size() % kElementLanes != 0) append(out, none, inverseMass);
   }
@@ -157,20 +165,35 @@ StrainElements compileStrain(const TriangleMesh& mesh, StrainPieces pieces, std:
   return out;
 }
 
+namespace {
+
+Eigen::Matrix2d gradientOf(const StrainElements& el, std::size_t e, const double* x, const double* y) {
+  const std::uint32_t o = el.node[0][e];
+  Eigen::Matrix2d f = Eigen::Matrix2d::Zero();
+  for (std::size_t k = 1; k < 4; ++k) {
+    const double dx = x[el.node[k][e]] - x[o], dy = y[el.node[k][e]] - y[o];
+    f(0, 0) += dx * el.b[2 * k - 2][e];
+    f(0, 1) += dx * el.b[2 * k - 1][e];
+    f(1, 0) += dy * el.b[2 * k - 2][e];
+    f(1, 1) += dy * el.b[2 * k - 1][e];
+  }
+  return f;
+}
+
+}  // namespace
+
+double stretchOf(const StrainElements& el, std::size_t e, const double* x, const double* y) {
+  const Eigen::Matrix2d f = gradientOf(el, e, x, y);
+  return 0.5 * (std::hypot(f(0, 0) + f(1, 1), f(1, 0) - f(0, 1)) + std::hypot(f(0, 0) - f(1, 1), f(1, 0) + f(0, 1)));
+}
+
 double strainEnergy(StrainModel model, const Lame& lame, const StrainElements& el, const double* x, const double* y) {
   double sum = 0.0;
   const double bulk = lame.lambda + lame.mu, gamma = 1.0 + lame.mu / bulk;
   for (std::size_t e = 0; e < el.size(); ++e) {
     if (!(el.area[e] > 0.0)) continue;
-    const std::uint32_t o = el.node[0][e];
-    double f00 = 0.0, f01 = 0.0, f10 = 0.0, f11 = 0.0;
-    for (std::size_t k = 1; k < 4; ++k) {
-      const double dx = x[el.node[k][e]] - x[o], dy = y[el.node[k][e]] - y[o];
-      f00 += dx * el.b[2 * k - 2][e];
-      f01 += dx * el.b[2 * k - 1][e];
-      f10 += dy * el.b[2 * k - 2][e];
-      f11 += dy * el.b[2 * k - 1][e];
-    }
+    const Eigen::Matrix2d f = gradientOf(el, e, x, y);
+    const double f00 = f(0, 0), f01 = f(0, 1), f10 = f(1, 0), f11 = f(1, 1);
     const double g00 = f00 * f00 + f10 * f10, g01 = f00 * f01 + f10 * f11, g11 = f01 * f01 + f11 * f11;
     if (model == StrainModel::NeoHookean) {
       const double j = f00 * f11 - f01 * f10;

@@ -31,11 +31,12 @@ inline constexpr std::size_t kElementLanes = 8;
 /// elements of no area at the dummy node, which stands behind the body's last.
 struct StrainElements {
   AlignedArray<std::uint32_t> node[4];
-  AlignedArray<double> b[6];        // b_1x, b_1y, b_2x, … [1/m]
-  AlignedArray<double> inertia[3];  // Σ w_k b_k b_kᵀ: xx, xy, yy [1/(kg·m)], w the inverse mass
-  AlignedArray<double> area;        // [m²]; 0: torn
-  AlignedArray<double> given[3];    // compliance times multiplier of each constraint, scratch
-  std::vector<std::size_t> colors;  // begin of each, and the end
+  AlignedArray<double> b[6];          // b_1x, b_1y, b_2x, … [1/m]
+  AlignedArray<double> inertia[3];    // Σ w_k b_k b_kᵀ: xx, xy, yy [1/(kg·m)], w the inverse mass
+  AlignedArray<double> area;          // [m²]; 0: torn
+  AlignedArray<double> given[3];      // compliance times multiplier of each constraint, scratch
+  std::vector<std::uint32_t> ofEdge;  // by triangle and its three sides: the element there
+  std::vector<std::size_t> colors;    // begin of each, and the end
   /// No angular frequency² of the body is above this times waveModulus/density: that of the stiffest element alone, as
   /// its share of the nodes' masses lets it move (Irons' theorem) [1/m²].
   double stiffest = 0.0;
@@ -48,6 +49,9 @@ enum class StrainPieces : std::uint8_t { Triangles, Edges };
 
 /// `inverseMass` [m/kg] by node; 0: held.
 StrainElements compileStrain(const TriangleMesh& mesh, StrainPieces pieces, std::span<const double> inverseMass);
+
+/// Largest principal stretch of an element.
+double stretchOf(const StrainElements& elements, std::size_t e, const double* x, const double* y);
 
 /// Nodes in the body's own columns, one dummy behind the last.
 struct NodeColumns {

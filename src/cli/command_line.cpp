@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "cli/help_texts.h"
 #include "cli/request.h"
 #include "export/vdb_frames.h"
 #include "run/exit_codes.h"
@@ -18,57 +19,10 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 6> kCommands{"run", "check", "explain", "field", "resume", "doctor"};
+constexpr std::array<std::string_view, 7> kCommands{"run", "check", "explain", "field", "batch", "resume", "doctor"};
 constexpr int kMostThreads = 1024;
 constexpr double kMostMetres = 1e9;
 constexpr int kNarrowest = 320, kWidest = 8192;  // picture [pixels]
-
-constexpr std::string_view kRunFooter = R"(Example:
-  froude run scenes/dam_break.toml -o out/dam --set model.spacing=0.02 --frames png
-
-The last line on stdout is the run's folder; pictures, gauges.csv and summary.json are in it.
-Exit codes: 0 done; 1 internal error; 2 the command line or the scene is wrong, nothing was written;
-3 the simulation went unstable and was stopped, the last sound state is kept; 4 input or output failed;
-130 SIGINT and 143 SIGTERM, both after a checkpoint (a second signal ends at once).)";
-
-constexpr std::string_view kResumeFooter = R"(Example:
-  froude resume out/dam
-
-The run goes on from its checkpoint.h5 with the same bits as if it had never stopped. Files later than the checkpoint
-are dropped first. The last line on stdout is the run's folder.
-Exit codes: 0 done, or there was nothing left to do; 1 internal error; 2 this is not the folder of a run, it has no
-checkpoint, or it was computed with another SIMD target; 3 unstable; 4 the checkpoint cannot be read, or output failed;
-130 SIGINT and 143 SIGTERM, both after a checkpoint.)";
-
-constexpr std::string_view kCheckFooter = R"(Example:
-  froude check scenes/*.toml --strict
-
-Problems go to stderr as FILE:LINE:COLUMN: key: what is wrong, what would be right.
-Exit codes: 0 all scenes can be run (warnings are told); 1 internal error; 2 a scene is wrong, or with --strict has
-warnings; 4 the findings cannot be written.)";
-
-constexpr std::string_view kExplainFooter = R"(Example:
-  froude explain scenes/dam_break.toml
-
-Runs the first moments of the scene to measure what a step costs; writes nothing.
-Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanation cannot be written.)";
-
-constexpr std::string_view kFieldFooter = R"(Example:
-  froude field scenes/shapes/gear.toml -o gear.png --offset 0.05 --offset -0.05
-  froude field scenes/mill.toml#wheel --at points.csv
-  froude field scenes/drawings/harbour.svg#buoy --check
-
-SHAPE is FILE.toml with one line shape = { ... } as in a scene, SCENE.toml#BODY in the body's own frame, FILE.csv with
-x,y of a vertex in each row, or FILE.svg#ID, an element or a group of a drawing (without #ID all of it).
---at reads x,y from each row and prints x,y,distance,normal_x,normal_y,closest_x,closest_y; the distance [m] is negative
-inside and exact everywhere.
-Exit codes: 0 done; 1 internal error; 2 the command line, the shape or a row of points is wrong, nothing was written;
-4 the picture or the table cannot be written.)";
-
-constexpr std::string_view kDoctorFooter = R"(Example:
-  froude doctor --json
-
-Exit codes: 0 told; 1 internal error; 2 the command line is wrong; 4 the findings cannot be written.)";
 
 CLI::Validator wholeNumber(int low, int high) {
   return {[=](std::string& text) -> std::string {
@@ -107,12 +61,13 @@ struct Typed {
   ExplainRequest explain;
   FieldRequest field;
   DoctorRequest doctor;
-  std::vector<std::string> sets;
-  std::string accuracy, frames, simd, layers;
+  study::BatchOptions batch;
+  std::vector<std::string> sets, sweeps;
+  std::string accuracy, frames, simd, layers, collect;
   double until = 0.0;
 };
 
-void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& typed) {
+void addCommonOptions(CLI::App& command, run::SessionOptions& session, Typed& typed) {
   command.add_option("--threads", session.threads, "threads to compute with; default: all usable cores")
       ->check(wholeNumber(1, kMostThreads))
       ->type_name("N");
@@ -120,11 +75,23 @@ void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& t
       ->check(seconds())
       ->type_name("SECONDS");
   command.add_option("--simd", typed.simd, "instruction set: scalar, sse4, avx2 or avx3")->type_name("TARGET");
+  command.add_flag("--quiet", session.quiet, "errors only; the folder is still the last line on stdout");
+}
+
+void addSessionOptions(CLI::App& command, run::SessionOptions& session, Typed& typed) {
+  addCommonOptions(command, session, typed);
   command.add_flag("--trace-leaks", session.traceLeaks,
                    "list every particle that leaked: when, where, into or through what; also in leaks.csv;"
                    " checks the path of every bullet, which is slower");
-  command.add_flag("--quiet", session.quiet, "errors only; the folder is still the last line on stdout");
   command.add_flag("--verbose", session.verbose, "a line for every 100th sub-step: its length and what bound it");
+}
+
+void addSceneOptions(CLI::App& command, Typed& typed) {
+  command.add_option("--set", typed.sets, "change a key of the scene, for example model.spacing=0.02; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("PATH=VALUE");
+  command.add_option("--frames", typed.frames, "frames to write instead of the scene's: any of png,h5,vdb, or none")
+      ->type_name("LIST");
 }
 
 void addRun(CLI::App& app, Typed& typed) {
@@ -133,14 +100,31 @@ void addRun(CLI::App& app, Typed& typed) {
   command.add_option("-o", typed.run.folder, "the run's folder, absent or empty; default: out/SCENE, out/SCENE-2, ...")
       ->type_name("DIR");
   command.add_flag("--force", typed.run.session.force, "replace the files of an earlier run in the folder");
-  command.add_option("--set", typed.sets, "change a key of the scene, for example model.spacing=0.02; may be repeated")
-      ->allow_extra_args(false)
-      ->type_name("PATH=VALUE");
+  addSceneOptions(command, typed);
   command.add_option("--accuracy", typed.accuracy, "not in this version")->type_name("P%");
-  command.add_option("--frames", typed.frames, "frames to write instead of the scene's: any of png,h5,vdb, or none")
-      ->type_name("LIST");
   addSessionOptions(command, typed.run.session, typed);
   command.footer(std::string(kRunFooter));
+}
+
+void addBatch(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("batch", "run many scenes, or one with many values of its keys");
+  study::BatchOptions& batch = typed.batch;
+  command.add_option("SCENE", batch.input.files, "scenes and batch files, .toml; with --resume those of before")
+      ->type_name("");
+  command.add_option("--sweep", typed.sweeps, "a key of the scenes and its values; repeated: all combinations")
+      ->allow_extra_args(false)
+      ->type_name("PATH=V1,V2,...");
+  command.add_option("-o", batch.folder, "the batch's folder, absent or empty")->type_name("DIR");
+  command.add_option("--jobs", batch.jobs, "runs side by side; default: as their sizes ask for")
+      ->check(wholeNumber(1, kMostThreads))
+      ->type_name("N");
+  command.add_flag("--resume", batch.resume, "go on with the batch in the folder, run nothing twice");
+  command.add_option("--baseline", batch.baseline, "compare with the results.csv of an earlier batch")
+      ->type_name("CSV");
+  command.add_option("--collect", typed.collect, "gather the table of a batch's folder, run nothing")->type_name("DIR");
+  addSceneOptions(command, typed);
+  addCommonOptions(command, batch.session, typed);
+  command.footer(std::string(kBatchFooter));
 }
 
 void addResume(CLI::App& app, Typed& typed) {
@@ -286,13 +270,41 @@ void finishSession(run::SessionOptions& session, const Typed& typed, const CLI::
   session.command = quoted(arguments);
 }
 
+std::vector<scene::Override> overridesOf(const Typed& typed, const CLI::App& command) {
+  std::vector<scene::Override> overrides;
+  for (const std::string& text : typed.sets) overrides.push_back(overrideOf(text));
+  if (command.count("--frames") > 0) overrides.emplace_back("output.frames", framesValue(typed.frames));
+  return overrides;
+}
+
+study::BatchOptions finishBatch(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
+  study::BatchOptions& batch = typed.batch;
+  batch.collect = command.count("--collect") > 0;
+  if (batch.collect) {
+    if (!batch.input.files.empty() || command.count("-o") > 0 || batch.resume)
+      throw UsageError("--collect DIR takes the batch in DIR as it is: no scenes, no -o, no --resume");
+    batch.folder = typed.collect;
+  }
+  if (batch.folder.empty()) throw UsageError("-o DIR is missing: the folder of the batch" + helpHint("batch"));
+  while (batch.folder.size() > 1 && batch.folder.back() == '/') batch.folder.pop_back();
+  if (batch.input.files.empty() && !batch.resume && !batch.collect)
+    throw UsageError("SCENE is required: scenes or a batch file, or --resume" + helpHint("batch"));
+  const bool changed = !typed.sweeps.empty() || !typed.sets.empty() || command.count("--frames") > 0;
+  if (batch.input.files.empty() && changed)
+    throw UsageError(
+        "--sweep, --set and --frames belong to scenes, and none is named; --resume alone takes those of before");
+  for (const std::string& text : typed.sweeps) batch.input.sweeps.push_back(study::parseSweep(text));
+  batch.input.settings = overridesOf(typed, command);
+  finishSession(batch.session, typed, command, arguments);
+  return std::move(batch);
+}
+
 run::RunOptions finishRun(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
   if (command.count("--accuracy") > 0) {
     throw UsageError(
         "--accuracy: not in this version: nothing chooses a model yet; name it in the scene as model.fluid");
   }
-  for (const std::string& text : typed.sets) typed.run.overrides.push_back(overrideOf(text));
-  if (command.count("--frames") > 0) typed.run.overrides.emplace_back("output.frames", framesValue(typed.frames));
+  typed.run.overrides = overridesOf(typed, command);
   if (command.count("-o") > 0 && typed.run.folder.empty()) throw UsageError("-o: the name of the folder is empty");
   finishSession(typed.run.session, typed, command, arguments);
   return std::move(typed.run);
@@ -338,6 +350,7 @@ FieldRequest finishField(Typed& typed, const CLI::App& command) {
 Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
   const std::string& name = command.get_name();
   if (name == "run") return finishRun(typed, command, arguments);
+  if (name == "batch") return finishBatch(typed, command, arguments);
   if (name == "resume") {
     finishSession(typed.resume.session, typed, command, arguments);
     return typed.resume;
@@ -382,6 +395,7 @@ Request parseCommandLine(const std::vector<std::string>& arguments) {
   addRun(app, typed);
   addReaders(app, typed);
   addField(app, typed);
+  addBatch(app, typed);
   addResume(app, typed);
   app.footer(
       "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"

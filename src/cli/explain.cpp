@@ -30,10 +30,16 @@ struct Item {
 /// What a run will take, from the model's own step bounds and a short measurement.
 struct Prediction {
   double substeps = 0.0;
+  double acousticSteps = 0.0;      // of wcsph; else 0
   double secondsPerSubstep = 0.0;  // 0: nothing could be measured
+  double sweepsPerSubstep = 0.0;   // in what was measured
   double bytes = 0.0;
   int threads = 1;
-  double wallSeconds() const { return substeps * secondsPerSubstep; }
+  // The first sub-steps of wcsph are many acoustic steps long: it is these that take the time.
+  double wallSeconds() const {
+    return acousticSteps > 0.0 && sweepsPerSubstep > 0.0 ? acousticSteps * secondsPerSubstep / sweepsPerSubstep
+                                                         : substeps * secondsPerSubstep;
+  }
 };
 
 constexpr double kMeasured = 1.0;   // wall time spent on measuring at most [s]
@@ -183,10 +189,11 @@ World worldOf(const scene::Scene& scene) {
 }
 
 // Steps a world that is thrown away; a mean over its first moments, without the very first sub-step, which allocates.
-double measuredSubstep(const scene::Scene& scene) {
+void measureSubstep(const scene::Scene& scene, Prediction& p) {
   using Clock = std::chrono::steady_clock;
   World world = worldOf(scene);
-  if (!world.substep().ok()) return 0.0;
+  if (!world.substep().ok()) return;
+  const std::uint64_t sweeps = world.ledger().sweeps;
   const Clock::time_point start = Clock::now();
   double elapsed = 0.0;
   int steps = 0;
@@ -194,16 +201,19 @@ double measuredSubstep(const scene::Scene& scene) {
     ++steps;
     elapsed = std::chrono::duration<double>(Clock::now() - start).count();
   }
-  return steps > 0 ? elapsed / steps : 0.0;
+  if (steps == 0) return;
+  p.secondsPerSubstep = elapsed / steps;
+  p.sweepsPerSubstep = static_cast<double>(world.ledger().sweeps - sweeps) / steps;
 }
 
 Prediction predict(const scene::Scene& scene) {
   Prediction p;
   const scene::Estimate cost = scene::estimate(scene);
   p.substeps = cost.substeps;
+  p.acousticSteps = cost.acousticSteps;
   p.bytes = cost.bytes;
   p.threads = run::usableCores();
-  run::withThreads(p.threads, [&] { p.secondsPerSubstep = measuredSubstep(scene); });
+  run::withThreads(p.threads, [&] { measureSubstep(scene, p); });
   return p;
 }
 
@@ -234,6 +244,7 @@ void printJson(const scene::Scene& scene, const std::vector<Item>& in, const std
   for (const Item& item : out) json["not_modelled"].push_back(toJson(item));
   Json prediction;
   prediction["substeps"] = p.substeps;
+  if (p.acousticSteps > 0.0) prediction["acoustic_steps"] = p.acousticSteps;
   prediction["threads"] = p.threads;
   prediction["wall_seconds"] = p.secondsPerSubstep > 0.0 ? Json(p.wallSeconds()) : Json(nullptr);
   prediction["memory_bytes"] = p.bytes;
@@ -261,8 +272,10 @@ void printText(const scene::Scene& scene, const std::vector<Item>& in, const std
                                ? fmt::format("{} on {}", run::durationInWords(p.wallSeconds()),
                                              plural(static_cast<std::size_t>(p.threads), "thread", "threads"))
                                : "unknown, the first sub-step fails";
-  fmt::print("\nPredicted, roughly, without output\n  sub-steps: {:.2g} for {} s\n  time: {}\n", p.substeps,
-             scene.duration, time);
+  const std::string acoustic =
+      p.acousticSteps > 0.0 ? fmt::format(", {:.2g} acoustic steps in them", p.acousticSteps) : "";
+  fmt::print("\nPredicted, roughly, without output\n  sub-steps: {:.2g} for {} s{}\n  time: {}\n", p.substeps,
+             scene.duration, acoustic, time);
   fmt::print("  memory: {}\n  error: {}\n", run::bytesInWords(p.bytes), kNoError);
 }
 

@@ -26,7 +26,10 @@ struct Dispatch {
   int operator()(const PrintRequest& r) const { return fmt::print("{}", r.text), kDone; }
   int operator()(const RunOptions& r) const { return runScene(r); }
   int operator()(const ResumeOptions& r) const { return resumeRun(r); }
-  int operator()(const CheckRequest& r) const { return scene::checkCommand(r.scenes, r.strict, r.json); }
+  int operator()(const CheckRequest& r) const {
+    return scene::checkCommand(study::itemsToCheck(r.scenes), r.strict, r.json);
+  }
+  int operator()(const study::BatchOptions& r) const { return study::runBatch(r); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
   int operator()(const FieldRequest& r) const { return fieldCommand(r); }
   int operator()(const DoctorRequest& r) const { return doctorCommand(r.json); }

@@ -8,6 +8,7 @@
 #include "export/field_painter.h"
 #include "run/run.h"
 #include "scene/shape_argument.h"
+#include "study/batch.h"
 
 namespace froude::cli {
 
@@ -37,7 +38,7 @@ struct DoctorRequest {
 };
 
 using Request = std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest,
-                             FieldRequest, DoctorRequest>;
+                             FieldRequest, study::BatchOptions, DoctorRequest>;
 
 /// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
 /// right.

@@ -1,6 +1,7 @@
 #include "export/hdf5_memory.h"
 
 #include <algorithm>
+#include <atomic>
 #include <string_view>
 
 #include "export/frames.h"
@@ -14,7 +15,9 @@ hid_t createInMemory(const std::string& name, std::size_t growth) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "HDF5");
   checkHdf5(H5Pset_fapl_core(access, growth, false), "HDF5");
-  return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  // HDF5 tells files in memory apart by their names, and several runs of a batch write the same frames.
+  static std::atomic<unsigned long> number{0};
+  return H5Fcreate((name + "#" + std::to_string(++number)).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
 }
 
 void writeScalar(hid_t object, const char* name, hid_t type, hid_t fileType, const void* value) {

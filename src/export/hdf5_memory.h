@@ -33,8 +33,7 @@ void checkHdf5(herr_t result, const std::string& what);
 /// An HDF5 file in memory.
 class Hdf5Memory {
  public:
-  /// `name`: unlike that of any file that is open now, HDF5 tells them apart by it; `growth`: bytes by which its memory
-  /// grows.
+  /// `name` is for messages; `growth`: bytes by which its memory grows.
   Hdf5Memory(const std::string& name, std::size_t growth);
   hid_t id() const { return file_; }
   /// Bytes that the file would have now.

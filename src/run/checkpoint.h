@@ -21,6 +21,7 @@ struct RunRecord {
   double fluidArea0 = 0.0;            // at the start [m²]
   int nextFrame = 0;                  // number of the next frame
   std::uint64_t gaugeBytes = 0;       // of gauges.csv that belong to the state
+  std::string reason;                 // why it is not done, in words; not saved
 };
 
 /// Saves world, gauges and record, written beside and renamed. Throws exporting::OutputError. Cost: two copies of the

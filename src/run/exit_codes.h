@@ -12,6 +12,7 @@ enum ExitCode : int {
   kUsageError = 2,   // the command line or the scene is wrong; nothing was written
   kUnstable = 3,     // stopped; the last sound state is kept
   kOutputError = 4,  // input or output failed; nothing half-written is left
+  kNotAllDone = 5,   // a batch in which some runs are not done
   kInterrupted = 130,
   kTerminated = 143,
 };

@@ -4,6 +4,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -145,7 +146,10 @@ Hdf5Writer::Hdf5Writer() : impl_(std::make_unique<Impl>()) {
   // The default, oldest format: newer ones checksum their first block together with a flag for "open", and the image of
   // an open file has the flag cleared but not the checksum (HDF5 1.10.8). Our own checksum covers the whole file.
   H5Pset_create_intermediate_group(impl_->links, 1);
-  impl_->file.reset(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, impl_->access));
+  // HDF5 tells files in memory apart by their names, and several runs of a batch may save at once.
+  static std::atomic<unsigned long> number{0};
+  impl_->file.reset(
+      H5Fcreate(fmt::format("checkpoint {}", ++number).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, impl_->access));
   if (!impl_->file.ok()) throw Error("checkpoint: HDF5 cannot make a file in memory");
 }
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 namespace froude::run {
 namespace {
@@ -17,9 +18,21 @@ constexpr std::chrono::milliseconds kBarInterval{100};
 constexpr std::chrono::seconds kLogInterval{5};
 constexpr int kBarWidth = 30;  // [characters]
 
-int terminalWidth() {
+// Columns and rows.
+std::pair<int, int> terminalSize() {
   winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return {80, 24};
+  return {size.ws_col, size.ws_row > 0 ? size.ws_row : 24};
+}
+
+// Bytes of the first `columns` characters.
+std::string cut(const std::string& text, int columns) {
+  std::size_t end = 0;
+  for (int seen = 0; end < text.size(); ++end) {
+    const bool starts = (static_cast<unsigned char>(text[end]) & 0xC0) != 0x80;
+    if (starts && ++seen > columns) break;
+  }
+  return text.substr(0, end);
 }
 
 }  // namespace
@@ -64,11 +77,8 @@ void Progress::update(double time, std::size_t particles) {
     fmt::print(stderr, "{}\n", text);
     return;
   }
-  const double done = std::clamp((time - begin_) / (end_ - begin_), 0.0, 1.0);
-  const int filled = static_cast<int>(done * kBarWidth);
-  std::string bar = fmt::format("[{:=<{}}{: <{}}] {}", "", filled, "", kBarWidth - filled, text);
-  bar.resize(std::min(bar.size(), static_cast<std::size_t>(terminalWidth() - 1)));
-  fmt::print(stderr, "\r\033[K{}", bar);
+  const std::string line = bar((time - begin_) / (end_ - begin_), kBarWidth) + " " + text;
+  fmt::print(stderr, "\r\033[K{}", cut(line, terminalSize().first - 1));
   std::fflush(stderr);
   shown_ = true;
 }
@@ -89,6 +99,34 @@ void Progress::say(const std::string& line) {
 void Progress::finish() {
   if (shown_) fmt::print(stderr, "\r\033[K");
   shown_ = false;
+}
+
+std::string bar(double part, int width) {
+  const int filled = static_cast<int>(std::clamp(part, 0.0, 1.0) * width);  // NaN, of an empty span, is full
+  return fmt::format("[{:=<{}}{: <{}}]", "", filled, "", width - filled);
+}
+
+LiveLines::LiveLines() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void LiveLines::clear() {
+  for (; shown_ > 0; --shown_) fmt::print(stderr, "\033[A\r\033[K");
+  std::fflush(stderr);
+}
+
+void LiveLines::draw(const std::vector<std::string>& lines) {
+  if (!terminal_) return;
+  const auto [columns, rows] = terminalSize();
+  std::string text;
+  for (std::size_t k = 0; k < shown_; ++k) text += "\033[A\r\033[K";
+  shown_ = std::min(lines.size(), static_cast<std::size_t>(std::max(rows - 1, 1)));
+  for (std::size_t k = lines.size() - shown_; k < lines.size(); ++k) text += cut(lines[k], columns - 1) + "\n";
+  fmt::print(stderr, "{}", text);
+  std::fflush(stderr);
+}
+
+void LiveLines::say(const std::string& line) {
+  clear();
+  fmt::print(stderr, "{}\n", line);
 }
 
 }  // namespace froude::run

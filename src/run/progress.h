@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace froude::run {
 
@@ -32,6 +33,29 @@ class Progress {
   bool shown_ = false;
   Clock::time_point start_, last_;
 };
+
+/// Lines at the bottom of a terminal, drawn over themselves; nothing where stderr is none.
+class LiveLines {
+ public:
+  LiveLines();
+  ~LiveLines() { clear(); }
+  LiveLines(const LiveLines&) = delete;
+  LiveLines& operator=(const LiveLines&) = delete;
+
+  bool onTerminal() const { return terminal_; }
+  /// Cut to the terminal's width, and to its height.
+  void draw(const std::vector<std::string>& lines);
+  /// A line that stays, above the others; also where there is no terminal.
+  void say(const std::string& line);
+  void clear();
+
+ private:
+  bool terminal_;
+  std::size_t shown_ = 0;
+};
+
+/// "[======          ]" of `width` characters between the brackets, for a part between 0 and 1.
+std::string bar(double part, int width);
 
 /// Is stderr a terminal on which colour is welcome (NO_COLOR is not set, TERM is not "dumb")?
 bool colourWelcome();

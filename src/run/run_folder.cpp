@@ -1,8 +1,6 @@
 #include "run/run_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using exporting::OutputError;
-
-constexpr std::string_view kLockName = ".lock";
 
 bool allDigits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -81,7 +77,16 @@ void removeRunFiles(const std::string& folder) {
 
 bool isEmptyButForLock(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename().string() != kLockName) return false;
+    if (entry.path().filename().string() != FolderLock::kName) return false;
+  }
+  return true;
+}
+
+// A run that was killed before its first summary: files of a run and nothing else.
+bool holdsOnlyRunFiles(const std::string& folder) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name != FolderLock::kName && !isRunFile(name) && !(name == "frames" && entry.is_directory())) return false;
   }
   return true;
 }
@@ -110,35 +115,7 @@ std::string firstFreeFolder(const std::string& sceneName) {
 
 }  // namespace
 
-RunFolder::RunFolder(std::string path, bool made) : path_(std::move(path)), made_(made) { lock(); }
-
-RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_(std::move(other.path_)), made_(other.made_), lock_(std::exchange(other.lock_, -1)) {}
-
-RunFolder::~RunFolder() {
-  if (lock_ < 0) return;
-  // Removed while it is still held: whoever opened the old file sees that it has gone and opens anew.
-  unlink(file(std::string(kLockName)).c_str());
-  ::close(lock_);
-}
-
-void RunFolder::lock() {
-  const std::string name = file(std::string(kLockName));
-  while (true) {
-    lock_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ < 0) throwOutputError(name);
-    const bool locked = flock(lock_, LOCK_EX | LOCK_NB) == 0;
-    if (!locked && errno == EWOULDBLOCK) {
-      ::close(std::exchange(lock_, -1));
-      throw UsageError(path_ + ": another run is writing here; wait for it, or name another folder with -o");
-    }
-    if (!locked) return;  // some file systems of clusters have no locks; a run without one is better than none
-    struct stat held = {};
-    struct stat present = {};
-    if (fstat(lock_, &held) == 0 && stat(name.c_str(), &present) == 0 && held.st_ino == present.st_ino) return;
-    ::close(std::exchange(lock_, -1));
-  }
-}
+RunFolder::RunFolder(std::string path, bool made) : path_(std::move(path)), made_(made), lock_(path_, "run") {}
 
 RunFolder RunFolder::create(const std::string& wanted, const std::string& sceneName, bool force) {
   if (wanted.empty() && !force) return {firstFreeFolder(sceneName), true};
@@ -151,7 +128,7 @@ RunFolder RunFolder::create(const std::string& wanted, const std::string& sceneN
   if (access(path.c_str(), R_OK | X_OK) != 0) throwOutputError(path);
   RunFolder folder(path, false);
   if (isEmptyButForLock(path)) return folder;
-  if (!holdsRun(path)) {
+  if (!holdsRun(path) && !(force && holdsOnlyRunFiles(path))) {
     throw UsageError("-o " + path +
                      ": the folder holds files that are not a run's; name a folder that is absent or empty");
   }
@@ -175,7 +152,7 @@ RunFolder RunFolder::open(const std::string& folder) {
 void RunFolder::abandon() {
   removeRunFiles(path_);
   if (!made_) return;
-  unlink(file(std::string(kLockName)).c_str());
+  unlink(file(FolderLock::kName).c_str());
   rmdir(path_.c_str());
 }
 

@@ -3,10 +3,11 @@
 
 #include <string>
 
+#include "run/folder_lock.h"
+
 namespace froude::run {
 
-/// A folder that this process alone writes into, for as long as the object lives. The lock is an flock on the file
-/// `.lock`, so it never outlives the process; the file goes with it.
+/// A folder that this process alone writes into, for as long as the object lives. Locked as FolderLock says.
 class RunFolder {
  public:
   /// The folder for a new run. `wanted` empty: out/SCENE, or out/SCENE-2, … whichever is the first that is not there.
@@ -18,10 +19,6 @@ class RunFolder {
   /// The folder of an earlier run. Throws UsageError when it is not one, or when another process is at work in it.
   static RunFolder open(const std::string& folder);
 
-  RunFolder(RunFolder&& other) noexcept;
-  RunFolder& operator=(RunFolder&&) = delete;
-  ~RunFolder();
-
   /// As it was given, without a slash at the end.
   const std::string& path() const { return path_; }
   std::string file(const std::string& name) const { return path_ + "/" + name; }
@@ -31,11 +28,10 @@ class RunFolder {
 
  private:
   RunFolder(std::string path, bool made);
-  void lock();
 
   std::string path_;
   bool made_ = false;
-  int lock_ = -1;
+  FolderLock lock_;
 };
 
 }  // namespace froude::run

@@ -33,19 +33,21 @@ RunLoop::RunLoop(const RunFolder& folder, const scene::Scene& scene, World& worl
   if (start == Start::New) takeOutput();
 }
 
-LoopResult RunLoop::run(double end, const SessionOptions& options, const SignalGuard& signals) {
-  openLeakLog(options);
-  Progress progress(world_.time(), end, options.quiet);
+LoopResult RunLoop::run(double end, const SessionOptions& options, RunObserver& observer) {
+  if (!begun_) openLeakLog(options);
+  begun_ = true;
   const std::chrono::duration<double> interval(scene_.output.checkpoint);
   while (world_.time() < end) {
-    if (signals.pending() != 0) return finish({Status::Interrupted, signals.pending(), {}, {}, {}});
+    if (const int signal = observer.pendingSignal(); signal != 0)
+      return finish({Status::Interrupted, signal, {}, {}, {}});
+    if (observer.wantsPause()) return {Status::Running, 0, {}, {}, {}};
     const double before = world_.time();
     const StepReport report = world_.substep();
     if (!report.ok()) return finish({Status::Unstable, 0, report, {}, {}});
     if (!(world_.time() > before)) throw Error(fmt::format("the step at t = {} s did not move time on", before));
-    trace(report, options, progress);
+    trace(report, options, observer);
     takeOutput();
-    progress.update(world_.time(), liveParticles());
+    observer.update(world_.time(), liveParticles());
     if (Clock::now() - lastCheckpoint_ >= interval) {
       checkpoint();
       writeSummary(Status::Running);
@@ -79,6 +81,7 @@ void RunLoop::checkpoint() {
 
 LoopResult RunLoop::finish(LoopResult result) {
   checkpoint();
+  if (result.status == Status::Unstable) record_.reason = describe(result.report, world_.time());
   if (result.status == Status::Done) {
     // Behind the checkpoint: a run that is resumed with a later end must not keep the row of this one.
     rows_.clear();
@@ -103,21 +106,22 @@ void RunLoop::openLeakLog(const SessionOptions& options) {
   world_.record(settings);
 }
 
-void RunLoop::trace(const StepReport& report, const SessionOptions& options, Progress& progress) {
+void RunLoop::trace(const StepReport& report, const SessionOptions& options, RunObserver& observer) {
   const Ledger& ledger = world_.ledger();
   if (options.verbose && (ledger.substeps % kVerboseEvery == 0 || report.rejected > 0)) {
-    progress.say(fmt::format("sub-step {}: t = {:.6g} s, dt = {:.3g} s by {}, {} particles{}", ledger.substeps,
+    observer.say(fmt::format("sub-step {}: t = {:.6g} s, dt = {:.3g} s by {}, {} particles{}", ledger.substeps,
                              world_.time(), report.dt, name(report.limit), liveParticles(),
                              report.rejected > 0 ? fmt::format(", undone {} times", report.rejected) : ""));
   }
   if (!leakLog_ || world_.leaks().empty()) return;
   leakLog_->append(world_);
-  for (const std::string& line : leakLines(world_, kMostLeaksTold)) progress.say(line);
+  for (const std::string& line : leakLines(world_, kMostLeaksTold)) observer.say(line);
 }
 
-void RunLoop::markFailed() noexcept {
+void RunLoop::markFailed(const std::string& reason) noexcept {
   try {
     countWallTime();
+    record_.reason = reason;
     writeSummary(Status::Failed);
   } catch (...) {  // the disk that failed the run may fail this as well; the first error is the one to tell
   }

@@ -12,16 +12,15 @@
 #include "run/gauge_log.h"
 #include "run/gauges.h"
 #include "run/leak_log.h"
-#include "run/progress.h"
 #include "run/run.h"
 #include "run/run_folder.h"
-#include "run/signals.h"
+#include "run/run_observer.h"
 #include "run/summary.h"
 #include "scene/scene.h"
 
 namespace froude::run {
 
-/// How a loop ended.
+/// How a loop ended. Running: it was asked to pause, and `run` goes on with it.
 struct LoopResult {
   Status status = Status::Done;
   int signal = 0;        // Interrupted: by which
@@ -41,10 +40,11 @@ class RunLoop {
   RunLoop(const RunFolder& folder, const scene::Scene& scene, World& world, GaugeSet& gauges, RunRecord record,
           Start start);
 
-  /// To the first step end at or after `end` [s]. Leaves checkpoint and summary behind, whatever the status.
-  LoopResult run(double end, const SessionOptions& options, const SignalGuard& signals);
-  /// The summary of a run that was ended by an exception; failing again is no news.
-  void markFailed() noexcept;
+  /// To the first step end at or after `end` [s]. Leaves checkpoint and summary behind, whatever the status, but for a
+  /// pause.
+  LoopResult run(double end, const SessionOptions& options, RunObserver& observer);
+  /// The summary of a run that was ended by an exception, and why; failing again is no news.
+  void markFailed(const std::string& reason) noexcept;
 
   const RunRecord& record() const { return record_; }
 
@@ -55,7 +55,7 @@ class RunLoop {
   void checkpoint();
   void writeSummary(Status status);
   void openLeakLog(const SessionOptions& options);
-  void trace(const StepReport& report, const SessionOptions& options, Progress& progress);
+  void trace(const StepReport& report, const SessionOptions& options, RunObserver& observer);
   LoopResult finish(LoopResult result);
   void countWallTime();
   std::size_t liveParticles() const;
@@ -66,6 +66,7 @@ class RunLoop {
   GaugeSet& gauges_;
   RunRecord record_;
   Start start_;
+  bool begun_ = false;
   std::optional<GaugeLog> gaugeLog_;
   std::optional<LeakLog> leakLog_;
   std::optional<exporting::FrameWriter> frames_;

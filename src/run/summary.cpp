@@ -1,5 +1,6 @@
 #include "run/summary.h"
 
+#include <fmt/format.h>
 #include <froude/base/assert.h>
 #include <froude/version.h>
 
@@ -127,6 +128,14 @@ double momentumError(const World& world) {
   return scale > 0.0 ? unexplained.norm() / scale : 0.0;
 }
 
+std::string describe(const StepReport& trouble, double time) {
+  std::string text = fmt::format("unstable at t = {:.6g} s: {} {:.3g} where {:.3g} is the limit", time,
+                                 name(trouble.trouble), trouble.troubleValue, trouble.troubleLimit);
+  if (trouble.troubleAt.allFinite())
+    text += fmt::format(", at ({:.4g}, {:.4g})", trouble.troubleAt.x(), trouble.troubleAt.y());
+  return text;
+}
+
 std::string buildType() {
   std::string text = FROUDE_BUILD_TYPE;
   if (kAssertionsOn) text += "+assertions";
@@ -149,6 +158,7 @@ std::string summaryText(const SummarySource& source, Status status) {
   json["state_hash"] = source.world.stateHash();
   json["warnings"] = source.record.warnings;
   json["status"] = name(status);
+  json["reason"] = source.record.reason;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -33,6 +33,9 @@ double volumeError(const World& world, double fluidArea0);
 /// |P − P0 − impulse from outside|/(M·v_max) over all particles; 0 for a world at rest.
 double momentumError(const World& world);
 
+/// "unstable at t = 0.1 s: compression 0.41 where 0.3 is the limit, at (0.2, 0.1)".
+std::string describe(const StepReport& trouble, double time);
+
 /// "Release", with "+assertions" where they are on and "(not optimised)" where that is so.
 std::string buildType();
 std::string compilerName();

@@ -14,18 +14,18 @@ namespace froude::scene {
 namespace {
 
 struct Verdict {
-  std::string file;
+  std::string label;
   std::vector<std::string> errors;
   nlohmann::json errorDetails = nlohmann::json::array();
   std::optional<Scene> scene;
   Estimate cost;
 };
 
-Verdict judgeFile(const std::string& file) {
+Verdict judgeItem(const CheckItem& item) {
   Verdict verdict;
-  verdict.file = file;
+  verdict.label = item.label;
   try {
-    Scene scene = load(file);
+    Scene scene = load(item.file, item.changes);
     verdict.cost = estimate(scene);
     verdict.scene = std::move(scene);
   } catch (const SceneError& error) {
@@ -35,7 +35,7 @@ Verdict judgeFile(const std::string& file) {
                                     {"key", error.key()},
                                     {"message", error.what()}});
   } catch (const Error& error) {
-    verdict.errors.push_back(file + ":0:0: scene: " + error.what());
+    verdict.errors.push_back(item.file + ":0:0: scene: " + error.what());
     verdict.errorDetails.push_back({{"line", 0}, {"column", 0}, {"key", "scene"}, {"message", verdict.errors.back()}});
   }
   return verdict;
@@ -71,7 +71,7 @@ std::string sentence(const Verdict& verdict) {
 }
 
 nlohmann::json report(const Verdict& verdict) {
-  nlohmann::json out{{"file", verdict.file}, {"ok", verdict.errors.empty()}, {"errors", verdict.errorDetails}};
+  nlohmann::json out{{"file", verdict.label}, {"ok", verdict.errors.empty()}, {"errors", verdict.errorDetails}};
   out["warnings"] = nlohmann::json::array();
   if (!verdict.scene) return out;
   const Scene& scene = *verdict.scene;
@@ -98,23 +98,23 @@ void printProblems(const Verdict& verdict) {
   for (const std::string& error : verdict.errors) fmt::print(stderr, "{}\n", error);
   if (!verdict.scene) return;
   for (const Warning& warning : verdict.scene->warnings) fmt::print(stderr, "{}\n", warning.line());
-  for (const std::string& note : verdict.scene->notes) fmt::print(stderr, "{}: note: {}\n", verdict.file, note);
+  for (const std::string& note : verdict.scene->notes) fmt::print(stderr, "{}: note: {}\n", verdict.label, note);
 }
 
 }  // namespace
 
-int checkCommand(const std::vector<std::string>& files, bool strict, bool json) {
+int checkCommand(const std::vector<CheckItem>& items, bool strict, bool json) {
   bool wrong = false;
   nlohmann::json reports = nlohmann::json::array();
-  for (const std::string& file : files) {
-    const Verdict verdict = judgeFile(file);
+  for (const CheckItem& item : items) {
+    const Verdict verdict = judgeItem(item);
     const bool warned = verdict.scene && !verdict.scene->warnings.empty();
     wrong = wrong || !verdict.errors.empty() || (strict && warned);
     printProblems(verdict);
     if (json) {
       reports.push_back(report(verdict));
     } else {
-      fmt::print("{}: {}\n", file, sentence(verdict));
+      fmt::print("{}: {}\n", item.label, sentence(verdict));
     }
   }
   // File names may hold any bytes; JSON may not.

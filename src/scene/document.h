@@ -8,6 +8,9 @@
 
 namespace froude::scene {
 
+/// All bytes of a file that a person wrote. SceneError, with `right` as in "a scene (.toml)".
+std::string readText(const std::string& file, const std::string& right);
+
 /// Parses a whole file. SceneError at the place where it stops being TOML. `file` is used in messages only.
 Node parseDocument(const std::string& file, const std::string& text);
 

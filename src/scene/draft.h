@@ -57,8 +57,6 @@ double distanceToOutline(const Polygon& polygon, const Vec2& p);
 /// The node that reads back as this polygon.
 Node shapeNode(const Polygon& polygon);
 
-/// All bytes of a file that a person wrote. SceneError, with `right` as in "a scene (.toml)".
-std::string readText(const std::string& file, const std::string& right);
 /// The keys of a scene's root.
 const std::vector<std::string>& sceneKeys();
 

@@ -3,6 +3,7 @@
 #include <froude/particles/pool.h>
 #include <froude/solver/bullet/ballistic.h>
 #include <froude/solver/fluid/fluid_model.h>
+#include <froude/solver/fluid/wcsph.h>
 
 #include <algorithm>
 
@@ -94,6 +95,10 @@ Estimate estimate(const Scene& scene) {
   result.substep = std::min(scene.duration, world.timeStep.value_or(kLongest));
   if (!result.bounds.empty()) result.substep = std::min(result.substep, result.bounds.front().dt);
   result.substeps = std::ceil(scene.duration / result.substep);
+  if (world.fluid && world.fluid->model == "wcsph" && result.speed > 0.0) {
+    result.acousticSteps =
+        std::max(result.substeps, std::ceil(scene.duration / acousticStepAt(*world.fluid, result.speed)));
+  }
   return result;
 }
 

@@ -18,6 +18,7 @@ struct Estimate {
   std::vector<NamedBound> bounds;  // each that the scene has at that speed and before any pressure, shortest first
   double substep = 0.0;            // the shortest of them, at most the duration [s]
   double substeps = 0.0;           // over the scene's duration
+  double acousticSteps = 0.0;      // of wcsph, over the scene's duration; else 0
   double particles = 0.0;          // placed, without what emitters add
   double bytes = 0.0;              // of the world
 };

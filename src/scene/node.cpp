@@ -121,7 +121,9 @@ std::string number(double value) {
   return text;
 }
 
-std::string inlineValue(const Node& node) {
+}  // namespace
+
+std::string toInline(const Node& node) {
   std::string out;
   switch (node.kind) {
     case Node::Kind::Boolean:
@@ -134,15 +136,17 @@ std::string inlineValue(const Node& node) {
     case Node::Kind::Text:
       return quoted(node.text);
     case Node::Kind::Array:
-      for (const Node& item : node.items) out += (out.empty() ? "" : ", ") + inlineValue(item);
+      for (const Node& item : node.items) out += (out.empty() ? "" : ", ") + toInline(item);
       return "[" + out + "]";
     case Node::Kind::Table:
       for (const auto& [name, value] : node.entries)
-        out += (out.empty() ? " " : ", ") + key(name) + " = " + inlineValue(value);
+        out += (out.empty() ? " " : ", ") + key(name) + " = " + toInline(value);
       return out.empty() ? "{}" : "{" + out + " }";
   }
   return out;
 }
+
+namespace {
 
 bool isArrayOfTables(const Node& node) {
   if (node.kind != Node::Kind::Array || node.items.empty()) return false;
@@ -155,7 +159,7 @@ bool isArrayOfTables(const Node& node) {
 void writeTable(const Node& table, const std::string& path, std::string& out) {
   for (const auto& [name, value] : table.entries) {
     const bool header = isArrayOfTables(value) ? name != "script" : value.kind == Node::Kind::Table && path.empty();
-    if (!header) out += key(name) + " = " + inlineValue(value) + "\n";
+    if (!header) out += key(name) + " = " + toInline(value) + "\n";
   }
   for (const auto& [name, value] : table.entries) {
     const std::string child = path.empty() ? key(name) : path + "." + key(name);

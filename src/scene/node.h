@@ -49,4 +49,7 @@ std::string_view kindName(Node::Kind kind);
 /// under [[…]], other tables under […], tables inside arrays inline.
 std::string toToml(const Node& table);
 
+/// A value on one line, as it stands behind `key =`.
+std::string toInline(const Node& value);
+
 }  // namespace froude::scene

@@ -108,7 +108,13 @@ Scene load(const std::string& file, const std::vector<Override>& overrides = {})
 /// Builds the world of a scene and fills it with its particles.
 World makeWorld(const Scene& scene);
 
+/// A scene to check: how it is called in the findings, its file, and what is changed in it.
+struct CheckItem {
+  std::string label, file;
+  std::vector<Override> changes;
+};
+
 /// `froude check`: prints problems on stderr, findings on stdout; returns the exit code.
-int checkCommand(const std::vector<std::string>& files, bool strict, bool json);
+int checkCommand(const std::vector<CheckItem>& items, bool strict, bool json);
 
 }  // namespace froude::scene

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <froude/base/random.h>
+#include <froude/fields/cut_reach.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/particles/emitter.h>
 #include <froude/particles/neighbour_list.h>
@@ -138,6 +139,33 @@ TEST(Allocations, an_object_pool_that_is_large_enough_makes_none) {
     pool.tryRelease(handles[random.below(static_cast<std::uint32_t>(handles.size()))]);
   }
   EXPECT_EQ(allocations, before);
+}
+
+TEST(Allocations, cutting_the_cells_of_bodies_that_turn_makes_none) {
+  tbb::task_arena(1).execute([] {
+    const Polygon plate = Polygon::box({{-0.3, -0.001}, {0.3, 0.001}}), wheel = Polygon::regular(9, 0.2);
+    const CutGrid grid{{0.0, 0.0}, 0.02, 0, 0};
+    CutCells cut;
+    const CutOutline fixed{&wheel, Transform::of({0.6, 0.6}, 0.0), {0.6, 0.6}, 0};
+    cut.setFixed(grid, {&fixed, 1}, {{{0.0, 0.0}, {1.0, 1.0}}, {true, true, true, true}});
+    CutReach reach;
+    auto turn = [&](int steps) {
+      std::size_t stencils = 0;
+      for (int s = 0; s < steps; ++s) {
+        const std::array<CutOutline, 2> moving{
+            CutOutline{&plate, Transform::of({0.4, 0.4}, 0.05 * kPi * s), {0.4, 0.4}, 1},
+            CutOutline{&wheel, Transform::of({0.7, 0.3}, -0.05 * kPi * s), {0.7, 0.3}, 2}};
+        cut.update({0, 0, 49, 49}, moving);
+        reach.build(grid, cut);
+        stencils += reach.stencils().size();
+      }
+      return stencils;
+    };
+    turn(40);
+    const std::size_t before = allocations;
+    EXPECT_GT(turn(40), 1000u);
+    EXPECT_EQ(allocations, before);
+  });
 }
 
 }  // namespace

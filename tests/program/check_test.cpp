@@ -23,7 +23,9 @@ Output check(const std::vector<std::string>& files, bool strict = false, bool js
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   Output o;
-  o.code = scene::checkCommand(files, strict, json);
+  std::vector<scene::CheckItem> items;
+  for (const std::string& file : files) items.push_back({file, file, {}});
+  o.code = scene::checkCommand(items, strict, json);
   o.out = ::testing::internal::GetCapturedStdout();
   o.err = ::testing::internal::GetCapturedStderr();
   return o;
@@ -93,6 +95,19 @@ TEST(Check, a_literal_sub_step_is_counted_exactly) {
   EXPECT_EQ(e.substeps, 100.0);
   ASSERT_EQ(e.bounds.size(), 1u);
   EXPECT_EQ(e.bounds[0].limit, StepLimit::Literal);
+}
+
+// Sound at ten times the speed of free fall, over half the kernel's support a step.
+TEST(Check, acoustic_steps_of_wcsph_are_counted) {
+  const auto steps = [](const std::string& keys) {
+    return scene::estimate(loadText(kHead + "[model]\nfluid = \"wcsph\"\nspacing = 0.1\n" + keys +
+                                    "[[fluid.block]]\nshape = { box = [0, 0, 1, 0.5] }\n"));
+  };
+  const scene::Estimate e = steps("support = 2.0\n");
+  EXPECT_NEAR(e.acousticSteps, 1.0 * 11.0 * e.speed / 0.1, 1.0);
+  EXPECT_GT(e.acousticSteps, 2.0 * e.substeps);
+  EXPECT_NEAR(steps("support = 4.0\n").acousticSteps, 0.5 * e.acousticSteps, 1.0);
+  EXPECT_EQ(scene::estimate(loadText(kHead + kFluid)).acousticSteps, 0.0);
 }
 
 TEST(Check, every_bound_of_the_sub_step_has_its_value) {

@@ -103,7 +103,7 @@ TEST(CommandLine, the_other_commands_are_read) {
 
 TEST(CommandLine, an_unknown_command_names_the_nearest_and_all) {
   expectComplaint({"rnu", "a.toml"}, {"rnu", "nearest", "run", "check", "explain", "resume", "doctor"});
-  expectComplaint({"batch", "a.toml"}, {"batch", "run", "doctor"});
+  expectComplaint({"batsh", "a.toml"}, {"batsh", "batch", "run", "doctor"});
   expectComplaint({}, {"missing", "run", "doctor"});
 }
 
@@ -148,13 +148,14 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 }
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
-  for (const char* command : {"run", "check", "explain", "field", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
-    EXPECT_NE(help.find("Example:\n  froude " + std::string(command)), std::string::npos) << help;
+    EXPECT_NE(help.find("Example"), std::string::npos) << help;
+    EXPECT_NE(help.find(":\n  froude " + std::string(command)), std::string::npos) << help;
     EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
-  for (const char* command : {"run", "check", "explain", "field", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }
@@ -197,6 +198,37 @@ TEST(CommandLine, field_says_what_it_could_be_asked) {
   expectComplaint({"field", "a.toml", "-o", "a.png", "--band", "0"}, {"--band", "above 0"});
   expectComplaint({"field", "a.toml", "-o", "a.png", "--offset", "nan"}, {"--offset", "nan"});
   expectComplaint({"field", "a.toml", "-o", "a.png", "--scale", "2"}, {"--scale", "FILE.svg#ID"});
+}
+
+TEST(CommandLine, batch_takes_all_its_options) {
+  const auto batch = std::get<study::BatchOptions>(
+      parse({"batch",      "a.toml", "b.toml", "--sweep", "seed=1,2",  "--sweep", "gravity=[0, -1],[0, -2]",
+             "-o",         "dir/",   "--jobs", "3",       "--threads", "2",       "--resume",
+             "--baseline", "r.csv",  "--set",  "title=x", "--frames",  "none",    "--until",
+             "0.5",        "--simd", "scalar", "--quiet"}));
+  EXPECT_EQ(batch.input.files, (std::vector<std::string>{"a.toml", "b.toml"}));
+  ASSERT_EQ(batch.input.sweeps.size(), 2u);
+  EXPECT_EQ(batch.input.sweeps[1].values, (std::vector<std::string>{"[0, -1]", "[0, -2]"}));
+  EXPECT_EQ(batch.folder, "dir");
+  EXPECT_EQ(batch.jobs, 3);
+  EXPECT_EQ(batch.session.threads, 2);
+  EXPECT_TRUE(batch.resume && batch.session.quiet && !batch.collect);
+  EXPECT_EQ(batch.baseline, "r.csv");
+  EXPECT_EQ(batch.input.settings, (std::vector<scene::Override>{{"title", "x"}, {"output.frames", "[]"}}));
+  EXPECT_EQ(batch.session.until, 0.5);
+  EXPECT_EQ(batch.session.simd, SimdTarget::Scalar);
+  const auto collect = std::get<study::BatchOptions>(parse({"batch", "--collect", "dir"}));
+  EXPECT_TRUE(collect.collect);
+  EXPECT_EQ(collect.folder, "dir");
+}
+
+TEST(CommandLine, a_batch_that_cannot_be_meant_is_refused) {
+  expectComplaint({"batch", "a.toml"}, {"-o DIR", "missing"});
+  expectComplaint({"batch", "-o", "d"}, {"SCENE", "--resume"});
+  expectComplaint({"batch", "a.toml", "-o", "d", "--jobs", "0"}, {"--jobs", "from 1"});
+  expectComplaint({"batch", "a.toml", "-o", "d", "--sweep", "seed"}, {"--sweep", "seed", "PATH="});
+  expectComplaint({"batch", "--resume", "-o", "d", "--sweep", "seed=1"}, {"--sweep", "scenes"});
+  expectComplaint({"batch", "a.toml", "--collect", "d"}, {"--collect"});
 }
 
 TEST(CommandLine, quoting_gives_back_what_a_shell_would_split) {

@@ -1,11 +1,13 @@
 // Every TOML block of the docs is a scene that loads. A block marked "toml fragment" is completed first, by what a
 // scene cannot do without.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "program/scene_support.h"
+#include "study/plan.h"
 
 namespace froude {
 namespace {
@@ -89,6 +91,24 @@ TEST(Docs, every_fragment_of_a_scene_in_them_loads) {
     EXPECT_EQ(judged(completed(block.text)), "accepted");
   }
   EXPECT_GE(fragments, 10);
+}
+
+TEST(Docs, every_batch_file_in_them_is_read) {
+  int batches = 0;
+  for (const Block& block : allBlocks()) {
+    if (block.kind != "toml batch") continue;
+    SCOPED_TRACE(block.file + ":" + std::to_string(block.line));
+    ++batches;
+    const std::string home = std::filesystem::temp_directory_path() / ("froude-docs-" + std::to_string(getpid()));
+    std::filesystem::copy(std::string(FROUDE_SOURCE_DIR) + "/scenes", home, std::filesystem::copy_options::recursive);
+    std::ofstream(home + "/b.toml") << block.text;
+    const study::BatchPlan plan = study::makePlan({{home + "/b.toml"}, {}, {}});
+    EXPECT_EQ(plan.runs.size(), 24u);
+    for (const std::size_t i : {std::size_t{0}, plan.runs.size() - 1})
+      EXPECT_NO_THROW(scene::load(plan.runs[i].scene, plan.runs[i].changes));
+    std::filesystem::remove_all(home);
+  }
+  EXPECT_GE(batches, 1);
 }
 
 TEST(Docs, the_complete_scene_of_the_format_has_no_warning) {

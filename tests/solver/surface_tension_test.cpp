@@ -28,7 +28,7 @@ class SurfaceTension : public FluidMethod {
   static double kinetic(const World& world) { return world.totals().kinetic; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Methods, SurfaceTension, kFluidMethods, methodName);
+INSTANTIATE_TEST_SUITE_P(Methods, SurfaceTension, kTensionMethods, methodName);
 
 TEST_P(SurfaceTension, a_drop_at_rest_has_the_pressure_of_laplace_and_comes_to_rest) {
   WorldDef def = tenseWorld({{-1.0, -1.0}, {1.0, 1.0}}, 0.04);

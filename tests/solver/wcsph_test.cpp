@@ -80,7 +80,7 @@ TEST(Wcsph, artificial_viscosity_takes_the_energy_that_its_kinematic_viscosity_s
   World plain = vortices(0.04), viscous = vortices(0.04, def);
   runTo(plain, 0.1);
   runTo(viscous, 0.1);
-  const double added = 0.04 * 10.0 * (2.0 * 0.04) / 8.0;  // α c h/8, h = half of four spacings
+  const double added = 0.04 * 10.0 * (1.5 * 0.04) / 8.0;  // α c h/8, h = half of three spacings
   const double ratio = viscous.totals().kinetic / plain.totals().kinetic;
   EXPECT_NEAR(std::log(ratio), -16.0 * kPi * kPi * added * 0.1, 0.15 * 16.0 * kPi * kPi * added * 0.1);
 }
@@ -111,7 +111,52 @@ TEST(Wcsph, water_that_is_let_go_in_a_tank_has_its_pressure_at_once_and_stays) {
   }
   EXPECT_NEAR(pressure / count, kG * 0.25, 0.05 * kG * 0.25);
   runTo(world, 0.5);
-  EXPECT_LT(testing::meanSpeed(world), 0.05 * wave);
+  EXPECT_LT(testing::meanSpeed(world), 0.01 * wave);
+}
+
+// A row of particles swings against a wall that stands still for too long; it is in corners that this shows first.
+TEST(Wcsph, water_round_a_step_stays_where_it_is) {
+  WorldDef def = wcsphWorld({{0.0, 0.0}, {0.5, 0.5}}, 0.0125);
+  def.bodies.push_back(testing::body("step", Polygon::box({{0.25, 0.0}, {0.5, 0.1}}), {0.0, 0.0}));
+  World world(def);
+  fill(world, {{0.0, 0.0}, {0.25, 0.4}}, 0.0125);
+  fill(world, {{0.25, 0.1}, {0.5, 0.4}}, 0.0125);
+  const double wave = std::sqrt(9.81 * 0.4);
+  for (const double t : {0.1, 0.4}) {
+    runTo(world, t);
+    EXPECT_LT(testing::meanSpeed(world), 0.01 * wave);
+    EXPECT_LT(world.totals(Species::Fluid).kinetic, 0.5 * world.totals().mass * 0.015 * 0.015 * wave * wave);
+  }
+  EXPECT_EQ(world.ledger().wallHits, 0u);
+}
+
+// Colagrossi's patch: pressures below zero inside pull its sides in; its rows must not stay behind.
+TEST(Wcsph, a_square_that_turns_stays_whole) {
+  constexpr double kSpacing = 0.025;
+  WorldDef def = wcsphWorld({{-2.0, -2.0}, {2.0, 2.0}}, kSpacing);
+  def.domain.closed = {false, false, false, false};
+  def.gravity = {0.0, 0.0};
+  World world(def);
+  const std::vector<Vec2> points = testing::latticePoints({{-0.5, -0.5}, {0.5, 0.5}}, kSpacing);
+  std::vector<Vec2> turning;
+  for (const Vec2& p : points) turning.emplace_back(p.y(), -p.x());
+  world.addFluid(points, turning);
+  const double angular = world.totals().angular;
+  runTo(world, 0.01);
+  EXPECT_NEAR(world.pressureAt({0.0, 0.0}), -0.1473427 * 1000.0,
+              0.05 * 147.3427);  // ρ ω² L², series of Poisson's equation
+  runTo(world, 1.5);
+  EXPECT_NEAR(world.totals().angular, angular, 0.02 * std::abs(angular));
+  const ParticlePool& pool = *std::as_const(world).fluid();
+  int alone = 0;
+  for (std::size_t i = 0; i < pool.size(); ++i) {
+    double nearest = 1.0;
+    for (std::size_t j = 0; j < pool.size(); ++j) {
+      if (j != i) nearest = std::min(nearest, std::hypot(pool.x()[i] - pool.x()[j], pool.y()[i] - pool.y()[j]));
+    }
+    alone += nearest > 2.0 * kSpacing ? 1 : 0;
+  }
+  EXPECT_EQ(alone, 0);
 }
 
 TEST(Wcsph, the_same_bits_on_any_number_of_threads_and_from_a_saved_state) {
@@ -134,12 +179,16 @@ TEST(Wcsph, the_same_bits_on_any_number_of_threads_and_from_a_saved_state) {
   }
 }
 
-// Sound a hundred times as fast as anything moves: a sub-step is as many acoustic steps as one may be.
+// Sound hundreds of times as fast as anything moves: a sub-step is as many acoustic steps as one may be.
 TEST(Wcsph, a_saved_state_goes_on_with_the_same_bits_where_sound_binds_the_step) {
   WorldDef def = wcsphWorld({{0.0, 0.0}, {0.5, 0.8}}, 0.02);
   def.fluid->compressible.soundSpeed = 300.0;
+  def.gravity = {0.0, 0.0};  // or pressures would bind it
   World world(def), other(def);
-  for (World* w : {&world, &other}) fill(*w, {{0.0, 0.0}, {0.3, 0.4}}, 0.02);
+  const std::vector<Vec2> points = testing::latticePoints({{0.1, 0.2}, {0.4, 0.6}}, 0.02);
+  std::vector<Vec2> velocities;
+  for (const Vec2& p : points) velocities.emplace_back(0.1 * (p.x() - 0.25), 0.1 * (0.4 - p.y()));
+  for (World* w : {&world, &other}) w->addFluid(points, velocities);
   StepReport report;
   for (int k = 0; k < 5; ++k) report = world.substep();
   EXPECT_EQ(report.limit, StepLimit::Acoustic);

@@ -165,7 +165,8 @@ TEST_P(FluidWorld, what_comes_and_goes_is_counted_and_momentum_closes) {
   EXPECT_EQ(ledger.quarantined, 0u);
   const Totals totals = world.totals();
   const Vec2 missing = totals.momentum - ledger.momentum0 - ledger.impulse;
-  EXPECT_LT(missing.norm() / (totals.mass * ledger.maxSpeed), 1e-7);
+  // wcsph sums displacements in single precision over acoustic steps.
+  EXPECT_LT(missing.norm() / (totals.mass * ledger.maxSpeed), wcsph() ? 1e-6 : 1e-7);
   const std::size_t start = 16 * 32;
   EXPECT_EQ(totals.count,
             start + ledger.emitted - ledger.recycled - ledger.expired - ledger.retired - ledger.sunk - ledger.crushed);

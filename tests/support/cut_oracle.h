@@ -101,50 +101,75 @@ class CutOracle {
   std::size_t joined_ = 0;
 };
 
-/// Areas of what hangs together through open sides in the cells [0, nx) × [0, ny), the largest first [cells].
-inline std::vector<double> connectedAreas(const CutCells& cut, std::int32_t nx, std::int32_t ny) {
-  const std::size_t parts = cut.parts().size();
-  std::vector<std::size_t> parent(parts + static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  auto root = [&](std::size_t a) {
-    while (parent[a] != a) a = parent[a] = parent[parent[a]];
-    return a;
-  };
-  auto inside = [&](std::int32_t i, std::int32_t j) { return i >= 0 && i < nx && j >= 0 && j < ny; };
-  auto whole = [&](std::int32_t i, std::int32_t j) {
-    return parts + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
-  };
-  std::vector<double> area(parent.size(), 0.0);
-  for (std::int32_t j = 0; j < ny; ++j) {
-    for (std::int32_t i = 0; i < nx; ++i) {
-      const std::int32_t c = cut.find(i, j);
-      if (c < 0) {
-        if (cut.solid(i, j)) continue;
-        area[whole(i, j)] = 1.0;
-        for (const auto& [x, y] : {std::pair{i + 1, j}, std::pair{i, j + 1}}) {
-          if (inside(x, y) && cut.find(x, y) < 0 && !cut.solid(x, y)) parent[root(whole(i, j))] = root(whole(x, y));
-        }
-        continue;
-      }
-      const CutCell& cell = cut.cells()[static_cast<std::size_t>(c)];
-      for (std::size_t p = cell.part; p < cell.part + cell.partCount; ++p) {
-        const CutPart& part = cut.parts()[p];
-        area[p] = part.area;
-        for (const CutJoint& joint : cut.joints().subspan(part.joint, part.jointCount)) {
-          const std::int32_t x = i + (joint.side == CutSide::Right ? 1 : joint.side == CutSide::Left ? -1 : 0);
-          const std::int32_t y = j + (joint.side == CutSide::Top ? 1 : joint.side == CutSide::Bottom ? -1 : 0);
-          if (!inside(x, y)) continue;
-          const std::size_t other = joint.part >= 0 ? static_cast<std::size_t>(joint.part) : whole(x, y);
-          parent[root(p)] = root(other);
-        }
+/// What hangs together through open sides in the cells [0, nx) × [0, ny).
+class CutRegions {
+ public:
+  CutRegions(const CutCells& cut, std::int32_t nx, std::int32_t ny) : cut_(cut), nx_(nx), ny_(ny) {
+    parent_.resize(cut.parts().size() + static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+    area_.resize(parent_.size(), 0.0);
+    for (std::int32_t j = 0; j < ny; ++j) {
+      for (std::int32_t i = 0; i < nx; ++i) {
+        const std::int32_t c = cut.find(i, j);
+        if (c >= 0)
+          joinParts(cut.cells()[static_cast<std::size_t>(c)]);
+        else if (!cut.solid(i, j))
+          joinWhole(i, j);
       }
     }
   }
-  std::vector<double> sums(parent.size(), 0.0);
-  for (std::size_t a = 0; a < parent.size(); ++a) sums[root(a)] += area[a];
-  std::sort(sums.begin(), sums.end(), std::greater<>());
-  while (!sums.empty() && sums.back() == 0.0) sums.pop_back();
-  return sums;
+
+  /// Equal for what hangs together; `part` −1: the wholly open cell (i, j).
+  std::size_t label(std::int32_t i, std::int32_t j, std::int32_t part) {
+    return root(part >= 0 ? static_cast<std::size_t>(part) : whole(i, j));
+  }
+  bool inside(std::int32_t i, std::int32_t j) const { return i >= 0 && i < nx_ && j >= 0 && j < ny_; }
+
+  /// The largest first [cells].
+  std::vector<double> areas() {
+    std::vector<double> sums(parent_.size(), 0.0);
+    for (std::size_t a = 0; a < parent_.size(); ++a) sums[root(a)] += area_[a];
+    std::sort(sums.begin(), sums.end(), std::greater<>());
+    while (!sums.empty() && sums.back() == 0.0) sums.pop_back();
+    return sums;
+  }
+
+ private:
+  std::size_t root(std::size_t a) {
+    while (parent_[a] != a) a = parent_[a] = parent_[parent_[a]];
+    return a;
+  }
+  std::size_t whole(std::int32_t i, std::int32_t j) const {
+    return cut_.parts().size() + static_cast<std::size_t>(j) * static_cast<std::size_t>(nx_) +
+           static_cast<std::size_t>(i);
+  }
+  void joinWhole(std::int32_t i, std::int32_t j) {
+    area_[whole(i, j)] = 1.0;
+    for (const auto& [x, y] : {std::pair{i + 1, j}, std::pair{i, j + 1}}) {
+      if (inside(x, y) && cut_.find(x, y) < 0 && !cut_.solid(x, y)) parent_[root(whole(i, j))] = root(whole(x, y));
+    }
+  }
+  void joinParts(const CutCell& cell) {
+    for (std::size_t p = cell.part; p < cell.part + cell.partCount; ++p) {
+      const CutPart& part = cut_.parts()[p];
+      area_[p] = part.area;
+      for (const CutJoint& joint : cut_.joints().subspan(part.joint, part.jointCount)) {
+        const std::int32_t x = cell.i + (joint.side == CutSide::Right ? 1 : joint.side == CutSide::Left ? -1 : 0);
+        const std::int32_t y = cell.j + (joint.side == CutSide::Top ? 1 : joint.side == CutSide::Bottom ? -1 : 0);
+        if (!inside(x, y)) continue;
+        parent_[root(p)] = root(joint.part >= 0 ? static_cast<std::size_t>(joint.part) : whole(x, y));
+      }
+    }
+  }
+
+  const CutCells& cut_;
+  std::int32_t nx_, ny_;
+  std::vector<std::size_t> parent_;
+  std::vector<double> area_;
+};
+
+inline std::vector<double> connectedAreas(const CutCells& cut, std::int32_t nx, std::int32_t ny) {
+  return CutRegions(cut, nx, ny).areas();
 }
 
 }  // namespace froude::test

@@ -13,7 +13,8 @@ namespace froude::test {
 
 enum class Tank { Full, Surface, Splash, Discs };
 
-/// Kinds and open fractions of a tank's cells, and a right-hand side of all wavelengths. Cell (0, 0) is the lower left.
+/// Kinds and open fractions of a tank's cells, and as right-hand side a step of free fall (5 cells at the
+/// bottom) with noise. Cell (0, 0) is the lower left.
 struct PressureScene {
   TileGrid grid;
   int n = 0;
@@ -50,7 +51,7 @@ struct PressureScene {
         kind[k] = wet ? GridCell::Fluid : GridCell::Air;
         wx[k] = i == 0 ? 0.0f : openFace(discs, i, j, true);
         wy[k] = j == 0 ? 0.0f : openFace(discs, i, j, false);
-        b[k] = static_cast<float>(0.5 * std::sin(18.0 * x) * std::cos(12.0 * y) + random.uniform(-0.04, 0.04));
+        b[k] = static_cast<float>(random.uniform(-0.3, 0.3) + (j == 0 ? 20.0 / n : 0.0));
       }
     }
     // A cell without an open face is solid.

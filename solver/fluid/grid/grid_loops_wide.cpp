@@ -188,16 +188,16 @@ void restrictResidual(const GridOperator& a, const float* r, const float* x, con
 void prolong(const GridOperator& a, const float* coarse, const TileParent* parents, float* x, std::size_t begin,
              std::size_t end) {
   const F f;
+  const hn::RebindToSigned<F> whole;
+  const auto twice = hn::IndicesFromVec(f, hn::ShiftRight<1>(hn::Iota(whole, 0)));
   for (std::size_t t = begin; t < end; ++t) {
     for (std::size_t j = 0; j < 16; ++j) {
       const float* from = coarse + parents[t].place + 16 * (j / 2);
-      HWY_ALIGN float twice[16];
-      for (std::size_t i = 0; i < 8; ++i) twice[2 * i] = twice[2 * i + 1] = from[i];
       for (std::size_t c = 0; c < kChunks; ++c) {
         const std::size_t at = t * 256 + 16 * j + c * kLanes;
         const M known = hn::Gt(hn::Load(f, a.inverse + at), hn::Zero(f));
-        const V change = hn::IfThenElseZero(known, hn::Load(f, twice + c * kLanes));
-        hn::Store(hn::Add(hn::Load(f, x + at), change), f, x + at);
+        const V change = hn::TableLookupLanes(hn::LoadU(f, from + c * kLanes / 2), twice);
+        hn::Store(hn::Add(hn::Load(f, x + at), hn::IfThenElseZero(known, change)), f, x + at);
       }
     }
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+#include <utility>
 
 #include <froude/base/parallel.h>
 
@@ -10,11 +12,22 @@ namespace {
 
 constexpr std::size_t kTileBlock = 8;    // tiles a task
 constexpr std::size_t kMostLevels = 28;  // coordinates of cells have 31 bits
+// Of what ties four cells to κ = 0, the share that ties their coarse cell: ½ keeps the distance of a straight surface
+// in coarse cells, 1 in fine ones.
+constexpr float kGroundShare = 0.7f;
 
-// Weights of the sweeps: reciprocals of the roots of Chebyshev's polynomial of degree 2 over those eigenvalues of D⁻¹A,
-// [1/2, 2], that cells of twice the size cannot show.
+// Weights of the sweeps: reciprocals of the roots of Chebyshev's polynomial over those eigenvalues of D⁻¹A, [low, 2],
+// that the next level cannot show. Of degree 2 over [1/2, 2] on the finest; below, where cells are few, of degree 4
+// over [1/4, 2].
 constexpr float kRoot = 0.75f * 0.70710678f;
-constexpr std::array<float, 2> kWeights{1.0f / (1.25f + kRoot), 1.0f / (1.25f - kRoot)};
+constexpr std::array<float, 2> kFine{1.0f / (1.25f + kRoot), 1.0f / (1.25f - kRoot)};
+constexpr float kOuter = 0.875f * 0.92387953f, kInner = 0.875f * 0.38268343f;
+constexpr std::array<float, 4> kCoarse{1.0f / (1.125f + kOuter), 1.0f / (1.125f - kInner), 1.0f / (1.125f + kInner),
+                                       1.0f / (1.125f - kOuter)};
+std::span<const float> weightsOf(std::size_t level) {
+  if (level == 0) return kFine;
+  return kCoarse;
+}
 
 template <typename Body>
 void overTiles(Crew& crew, const GridLevel& level, Body&& body) {
@@ -45,7 +58,7 @@ void linkTiles(GridLevel& level) {
 
 }  // namespace
 
-float Multigrid::firstWeight() const { return used_ > 1 ? kWeights[0] : 1.0f; }
+float Multigrid::firstWeight(std::size_t level) const { return level + 1 < used_ ? weightsOf(level)[0] : 1.0f; }
 
 void Multigrid::build(const TileGrid& grid, const PressureCoefficients& coefficients) {
   coefficients_ = &coefficients;
@@ -137,7 +150,7 @@ void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
           const std::size_t k = t * TileGrid::kCells + 32 * j + 2 * i, to = corner + 16 * j + i;
           coarse.ax[to] = period.x == 1 ? 0.0f : 0.5f * (ax[k] + ax[k + 16]);
           coarse.ay[to] = period.y == 1 ? 0.0f : 0.5f * (ay[k] + ay[k + 1]);
-          coarse.ground[to] = (ground[k] + ground[k + 1]) + (ground[k + 16] + ground[k + 17]);
+          coarse.ground[to] = kGroundShare * ((ground[k] + ground[k + 1]) + (ground[k + 16] + ground[k + 17]));
         }
       }
     }
@@ -179,10 +192,6 @@ void Multigrid::joinExtras(GridLevel& coarse) const {
   const std::size_t base = fine.grid->values();
   const auto cellOf = [&](std::size_t place) {
     return place < base ? place : static_cast<std::size_t>(anchors_[place - base]);
-  };
-  const auto parentOf = [&](std::size_t cell) {
-    const std::size_t within = cell % TileGrid::kCells;
-    return fine.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
   };
   for (std::size_t e = 0; e < anchors_.size(); ++e) {
     if (anchors_[e] != 0) coarse.ground[parentOf(anchors_[e])] += coefficients_->ground[base + e];
@@ -258,60 +267,73 @@ double Multigrid::smooth(Crew& crew, GridLevel& level, const float* r, const flo
 
 const float* Multigrid::cycle(Crew& crew, const float* r, double& product) { return visit(crew, 0, r, &product); }
 
-// The first sweep's result is in level.one; what is returned is in level.two.
+// The first sweep's result is in level.one.
 const float* Multigrid::visit(Crew& crew, std::size_t k, const float* r, double* product) {
   GridLevel& level = levels_[k];
   float *one = level.one.data(), *two = level.two.data();
-  if (k + 1 == used_) {
-    overTiles(crew, level,
-              [&](std::size_t b, std::size_t e) { loops_->start(level.matrix, r, 1.0f, two, nullptr, b, e); });
+  if (k + 1 == used_) {  // nothing is coupled: the sweep with weight 1 has solved it
     if (product != nullptr) {
       *product = 0.0;
       for (std::size_t i = 0; i < level.inverse.size(); ++i) {
-        two[i] = level.inverse[i] * r[i];
-        *product += static_cast<double>(r[i]) * static_cast<double>(two[i]);
+        *product += static_cast<double>(r[i]) * static_cast<double>(one[i]);
       }
     }
-    return two;
+    return one;
   }
-  GridLevel& coarse = levels_[k + 1];
-  const auto [first, second] = kWeights;
-  smooth(crew, level, r, one, second, two, false);
+  const std::span<const float> weights = weightsOf(k);
+  for (std::size_t i = 1; i < weights.size(); ++i) {
+    smooth(crew, level, r, one, weights[i], two, false);
+    std::swap(one, two);
+  }
+  correct(crew, k, r, one);
+  for (std::size_t i = weights.size(); i-- > 0;) {
+    const double sum = smooth(crew, level, r, one, weights[i], two, i == 0 && product != nullptr);
+    if (i == 0 && product != nullptr) *product = sum;
+    std::swap(one, two);
+  }
+  return one;
+}
+
+// Adds to x what the coarser levels make of its residual.
+void Multigrid::correct(Crew& crew, std::size_t k, const float* r, float* x) {
+  GridLevel &level = levels_[k], &coarse = levels_[k + 1];
   overTiles(crew, level, [&](std::size_t b, std::size_t e) {
-    loops_->restrictResidual(level.matrix, r, two, level.parents.data(), coarse.r.data(), b, e);
+    loops_->restrictResidual(level.matrix, r, x, level.parents.data(), coarse.r.data(), b, e);
   });
-  const std::size_t base = level.grid->values();
-  const auto parentOf = [&](std::size_t cell) {
-    const std::size_t within = cell % TileGrid::kCells;
-    return level.parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
-  };
-  if (k == 0) {
-    const auto give = [&](std::size_t place, float value) {
-      const std::size_t cell = place < base ? place : anchors_[place - base];
-      if (cell != 0) coarse.r[parentOf(cell)] += value;
-    };
-    for (std::size_t e = base; e < base + extra(); ++e) give(e, r[e] - level.diagonal[e] * two[e]);
-    for (const PressureEdge& edge : coefficients_->edges) {
-      give(edge.a, edge.coefficient * two[edge.b]);
-      give(edge.b, edge.coefficient * two[edge.a]);
-    }
-  }
+  if (k == 0) restrictExtras(r, x);
   overTiles(crew, coarse, [&](std::size_t b, std::size_t e) {
-    loops_->start(coarse.matrix, coarse.r.data(), first, coarse.one.data(), nullptr, b, e);
+    loops_->start(coarse.matrix, coarse.r.data(), firstWeight(k + 1), coarse.one.data(), nullptr, b, e);
   });
   const float* correction = visit(crew, k + 1, coarse.r.data(), nullptr);
   overTiles(crew, level, [&](std::size_t b, std::size_t e) {
-    loops_->prolong(level.matrix, correction, level.parents.data(), two, b, e);
+    loops_->prolong(level.matrix, correction, level.parents.data(), x, b, e);
   });
-  if (k == 0) {
-    for (std::size_t e = 0; e < extra(); ++e) {
-      if (anchors_[e] != 0 && level.inverse[base + e] > 0.0f) two[base + e] += correction[parentOf(anchors_[e])];
-    }
+  if (k > 0) return;
+  for (std::size_t e = 0; e < anchors_.size(); ++e) {
+    const std::size_t place = level.grid->values() + e;
+    if (anchors_[e] != 0 && level.inverse[place] > 0.0f) x[place] += correction[parentOf(anchors_[e])];
   }
-  smooth(crew, level, r, two, second, one, false);
-  const double sum = smooth(crew, level, r, one, first, two, product != nullptr);
-  if (product != nullptr) *product = sum;
-  return two;
+}
+
+// What the edges add to the residual of the cells, and what the extra unknowns have of it, goes to the second level.
+void Multigrid::restrictExtras(const float* r, const float* x) {
+  const GridLevel& level = levels_[0];
+  const std::size_t base = level.grid->values();
+  const auto give = [&](std::size_t place, float value) {
+    const std::size_t cell = place < base ? place : anchors_[place - base];
+    if (cell != 0) levels_[1].r[parentOf(cell)] += value;
+  };
+  for (std::size_t e = base; e < base + anchors_.size(); ++e) give(e, r[e] - level.diagonal[e] * x[e]);
+  for (const PressureEdge& edge : coefficients_->edges) {
+    give(edge.a, edge.coefficient * x[edge.b]);
+    give(edge.b, edge.coefficient * x[edge.a]);
+  }
+}
+
+// The place in the second level of a cell of the finest.
+std::size_t Multigrid::parentOf(std::size_t cell) const {
+  const std::size_t within = cell % TileGrid::kCells;
+  return levels_[0].parents[cell / TileGrid::kCells].place + (within / 32) * 16 + within % 16 / 2;
 }
 
 std::size_t Multigrid::memoryBytes() const {

@@ -2,8 +2,9 @@
 //
 // Cells are joined 2 × 2 from level to level until none is coupled to another. A coarse face's coefficient is the mean
 // of the fine ones, so that walls stay closed however thin they are (Weber, Mueller-Roemer, Stork & Fellner, Comput.
-// Graph. Forum 34 (2015)); a coarse cell is tied to κ = 0 as strongly as its cells together. Corrections are constant
-// over a coarse cell, sweeps are Chebyshev's polynomial in D⁻¹A: the cycle is symmetric, as conjugate gradients demand.
+// Graph. Forum 34 (2015)); a coarse cell is tied to κ = 0 nearly as strongly as its cells together. Corrections are
+// constant over a coarse cell, sweeps are Chebyshev's polynomial in D⁻¹A: the cycle is symmetric, as conjugate
+// gradients demand.
 #pragma once
 
 #include <span>
@@ -45,7 +46,7 @@ class Multigrid {
   std::size_t extra() const { return coefficients_->ground.size() - finest().grid->values(); }
 
   /// The weight of the first sweep, whose result from κ = 0, weight·D⁻¹r, `cycle` finds in finest().one.
-  float firstWeight() const;
+  float firstWeight(std::size_t level = 0) const;
   /// Preconditions the residual r: returns where the result is (finest().one or two). Leaves r·result in `product`.
   const float* cycle(Crew& crew, const float* r, double& product);
 
@@ -63,6 +64,9 @@ class Multigrid {
   void findAnchors();
   void joinExtras(GridLevel& coarse) const;
   const float* visit(Crew& crew, std::size_t k, const float* r, double* product);
+  void correct(Crew& crew, std::size_t k, const float* r, float* x);
+  void restrictExtras(const float* r, const float* x);
+  std::size_t parentOf(std::size_t cell) const;
   double smooth(Crew& crew, GridLevel& level, const float* r, const float* x, float weight, float* out, bool sum);
 
   const GridLoops* loops_;

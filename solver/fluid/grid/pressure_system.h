@@ -58,7 +58,7 @@ struct PressureBody {
 struct PressureReport {
   int iterations = 0;
   float residual = 0.0f;      // largest |b − Aκ| over the unknowns
-  bool converged = false;     // residual ≤ tolerance
+  bool converged = false;     // residual ≤ tolerance, or ≤ 1e-6 of the largest κ: single precision's end
   bool fallback = false;      // the multigrid's iterations stalled and another method was used
   int closedRegions = 0;      // connected unknowns without ground
   float closedSource = 0.0f;  // largest mean of b over such a region: cannot be met, and was spread over it
