@@ -160,8 +160,8 @@ struct SoftDef {
 
 /// How soft bodies are advanced within a sub-step of the world.
 struct SoftSettings {
-  int substeps = 0;        // per 1/60 s; 0: as the slowest wave's bound asks
-  double tolerance = 0.0;  // relative residual of the constraints that each is iterated to; 0: one sweep each
+  int substeps = 0;        // per 1/60 s, at least; more where the fastest wave asks for them
+  double tolerance = 0.0;  // each is swept until its multipliers change by less of themselves; 0: one sweep
 };
 
 struct SinkDef {

@@ -170,7 +170,13 @@ void World::Impl::advance(double dt, StepStats& stats) {
     ballistic->advance(context, *bullets, impulses, stats);
     events.finishSpecies();
   }
-  if (soft != nullptr) soft->advance(context, def.softSettings, bodies, impulses, stats);
+  if (soft != nullptr) {
+    MetFluid met;
+    if (fluid != nullptr) {
+      met = {fluid.get(), 1.0 / fluidModel->particleMass(), 0.5 * def.fluid->spacing, filterOf(Species::Fluid)};
+    }
+    soft->advance(context, def.softSettings, bodies, fluid != nullptr ? &met : nullptr, impulses, stats);
+  }
   explainLeaks(dt);
   finishForce(dt, stats);
   pushBodies(dt);
@@ -264,12 +270,12 @@ void World::Impl::judge(StepStats& stats, double dt) {
     return;
   }
   if (fluidModel != nullptr) {
-    const double travel = after.maxSpeed * dt / fluidModel->supportRadius();
+    const double travel = after.maxSpeed * dt / fluidModel->farthestTravel();
     if (travel > def.limits.displacement) {
       fail(Trouble::Displacement, travel, def.limits.displacement);
       return;
     }
-    if (stats.maxCompression > def.limits.compression) {
+    if (fluidModel->undoesCompression() && stats.maxCompression > def.limits.compression) {
       fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
       return;
     }

@@ -54,8 +54,7 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
   std::vector<scene::Override> all = soft ? overrides : own;
   all.insert(all.end(), soft ? own.begin() : overrides.begin(), soft ? own.end() : overrides.end());
   try {
-    scene::Scene scene = scene::load(scenePath(entry.scene), all);
-    if (entry.edit) entry.edit(scene);
+    const scene::Scene scene = scene::load(scenePath(entry.scene), all);
     World world = scene::makeWorld(scene);
     if (entry.prepare) entry.prepare(world);
     const std::unique_ptr<Measure> measure = entry.measure(scene);

@@ -53,7 +53,6 @@ struct Case {
   std::function<void(World&)> prepare{};  // before t = 0: what a scene cannot say; empty: nothing
   /// Of a case of soft bodies: models of the first one, whose spacing is the case's. Empty: a case of fluids.
   std::vector<std::string> softModels{};
-  std::function<void(scene::Scene&)> edit{};  // before there is a world, likewise
 };
 
 /// Of all files in cases/, by name.

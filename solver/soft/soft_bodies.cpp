@@ -13,7 +13,28 @@ namespace {
 // to 1.5 of it (measured); the rest is for what is compressed. A box of 200 kg that bounces on a block shows 4 % of the
 // energy too much for moments at 0.8, 0.004 % at half of that: velocities are those of half a part before.
 constexpr double kPartOfBound = 0.5;
+constexpr double kUntangle = 0.02;         // of the way to the rest shape in a part
+constexpr int kMostSweeps = 50;            // of a part
 constexpr std::size_t kColorBlock = 1024;  // elements of a colour that one thread takes at once
+
+// About the centre of mass.
+struct Spin {
+  Vec2 center{0, 0};
+  double angular = 0.0, inertia = 0.0;
+};
+
+Spin spinOf(const SoftBody& b, const double* x, const double* y, const double* vx, const double* vy) {
+  Spin s;
+  for (std::size_t k = 0; k < b.points(); ++k) {
+    s.center += b.mass[k] / b.totalMass * Vec2(x[k], y[k]);
+  }
+  for (std::size_t k = 0; k < b.points(); ++k) {
+    const Vec2 arm = Vec2(x[k], y[k]) - s.center;
+    s.inertia += b.mass[k] * arm.squaredNorm();
+    s.angular += b.mass[k] * cross(arm, Vec2(vx[k], vy[k]));
+  }
+  return s;
+}
 
 template <typename Loop>
 void forEachColor(const StrainElements& elements, Loop&& loop) {
@@ -72,11 +93,12 @@ void SoftBodies::add(SoftDef def) {
   touchImpulse_.resize(bodies_.size());
   momentumBefore_.resize(bodies_.size());
   gravityWork_.resize(bodies_.size());
+  sweeps_.resize(bodies_.size());
 }
 
 int SoftBodies::partsOf(double dt, const SoftSettings& settings) const {
-  const double part = settings.substeps > 0 ? 1.0 / (60.0 * settings.substeps)
-                                            : kPartOfBound * 2.0 / std::sqrt(std::max(frequencySquared_, 1e-300));
+  double part = kPartOfBound * 2.0 / std::sqrt(std::max(frequencySquared_, 1e-300));
+  if (settings.substeps > 0) part = std::min(part, 1.0 / (60.0 * settings.substeps));
   return static_cast<int>(std::clamp(std::ceil(dt / part * (1.0 - 1e-12)), 1.0, 1e6));
 }
 
@@ -98,9 +120,11 @@ void SoftBodies::load(const StepContext& context) {
         momentum += body(i).mass[k] * Vec2(vx_[o + k], vy_[o + k]);
         free_[o + k] = context.obstacles.clearance({x_[o + k], y_[o + k]}) - 0.5 * body(i).def.thickness;
       }
+      bodies_[i]->tangled = body(i).isTangled(x_.data() + o, y_.data() + o);
       momentumBefore_[i] = momentum;
       gravityImpulse_[i] = touchImpulse_[i] = Vec2(0.0, 0.0);
       gravityWork_[i] = 0.0;
+      sweeps_[i] = 0;
       touches_[i].clear();
     }
   });
@@ -132,22 +156,32 @@ SoftColumns SoftBodies::columns() {
 }
 
 void SoftBodies::advance(const StepContext& context, const SoftSettings& settings, BodySet& bodies,
-                         ImpulseLedger& impulses, StepStats& stats) {
+                         const MetFluid* fluid, ImpulseLedger& impulses, StepStats& stats) {
   const int parts = partsOf(context.dt, settings);
   const double dt = context.dt / parts;
   load(context);
   pushed_.begin(bodies);
-  pairs_.find(bodies_, columns(), bodies, context.dt + dt);
+  pairs_.find(bodies_, columns(), bodies, fluid, context.dt);
+  const bool alone = pairs_.pairCount() == 0 && !bodies.anyFree();
   for (int p = 0; p < parts; ++p) {
     const Part part{dt, static_cast<double>(p) / parts, static_cast<double>(p + 1) / parts};
     pushed_.advance(dt);
-    forEachBody([&](std::size_t i) { move(context, part, i); });
-    pairs_.resolve(columns(), bodies, pushed_, part.begin * context.dt, part.end * context.dt, pairTouches_);
-    forEachBody([&](std::size_t i) { meetObstacles(context, part, i); });
-    for (std::size_t i = 0; i < count(); ++i) meetFreeBodies(context, part, i);
-    forEachBody([&](std::size_t i) { finish(context, part, i); });
+    pairs_.advanceFluid(dt);
+    forEachBody([&](std::size_t i) {
+      move(context, part, settings.tolerance, i);
+      if (!alone) return;
+      meetObstacles(context, part, i);
+      finish(context, part, i);
+    });
+    if (!alone) {
+      pairs_.resolve(columns(), bodies, pushed_, part.begin * context.dt, part.end * context.dt, pairTouches_);
+      forEachBody([&](std::size_t i) { meetObstacles(context, part, i); });
+      for (std::size_t i = 0; i < count(); ++i) meetFreeBodies(context, part, i);
+      forEachBody([&](std::size_t i) { finish(context, part, i); });
+    }
     book(impulses);
   }
+  if (fluid != nullptr) pairs_.storeFluid(*fluid);
   store();
   pushed_.store(bodies, context.dt);
   stats.softParts += static_cast<std::uint64_t>(parts);
@@ -159,6 +193,7 @@ void SoftBodies::report(ImpulseLedger& impulses, StepStats& stats) {
   for (std::size_t i = 0; i < count(); ++i) {
     stats.gravityImpulse += gravityImpulse_[i];
     stats.gravityWork += gravityWork_[i];
+    stats.sweeps += sweeps_[i];
     if (!body(i).anyPinned) continue;
     Vec2 momentum(0.0, 0.0);
     for (std::size_t k = 0; k < body(i).points(); ++k) {
@@ -168,6 +203,31 @@ void SoftBodies::report(ImpulseLedger& impulses, StepStats& stats) {
     const Vec2 held = momentum - momentumBefore_[i] - gravityImpulse_[i] - touchImpulse_[i];
     const std::size_t pin = offset(i) + body(i).def.pinned.front();
     impulses.add(-1, {x_[pin], y_[pin]}, -held, {0.0, 0.0});
+  }
+}
+
+// Towards the best fit of the rest shape, without its speed (finish): momentum stays, energy only goes.
+void SoftBodies::untangle(std::size_t i) {
+  const SoftBody& b = body(i);
+  const auto& rest = b.def.mesh->points;
+  const NodeColumns n = columnsOf(i);
+  Vec2 from(0.0, 0.0), to(0.0, 0.0);
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    from += b.mass[k] / b.totalMass * rest[k];
+    to += b.mass[k] / b.totalMass * Vec2(n.x[k], n.y[k]);
+  }
+  double along = 0.0, turn = 0.0;
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    const Vec2 p = rest[k] - from, q = Vec2(n.x[k], n.y[k]) - to;
+    along += b.mass[k] * p.dot(q);
+    turn += b.mass[k] * cross(p, q);
+  }
+  const Rotation rotation = Rotation::of(std::atan2(turn, along));
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    if (n.inverseMass[k] == 0.0) continue;
+    const Vec2 goal = to + rotation.apply(rest[k] - from);
+    n.x[k] += kUntangle * (goal.x() - n.x[k]);
+    n.y[k] += kUntangle * (goal.y() - n.y[k]);
   }
 }
 
@@ -201,7 +261,29 @@ void SoftBodies::inflate(std::size_t i) {
   }
 }
 
-void SoftBodies::correct(const StepContext& context, std::size_t i, double dt) {
+// One sweep, or as many as bring the change of the multipliers in a sweep below the tolerance, relative to themselves.
+int SoftBodies::correct(const StepContext& context, std::size_t i, double dt, double tolerance) {
+  SoftBody& b = *bodies_[i];
+  if (tolerance == 0.0 || !b.isStrain()) {
+    project(context, i, dt);
+    return 1;
+  }
+  for (int sweep = 1;; ++sweep) {
+    for (std::size_t k = 0; k < 3; ++k) b.before[k].assign(b.elements.given[k].span());
+    project(context, i, dt);
+    double change = 0.0, size = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t e = 0; e < b.elements.size(); ++e) {
+        const double now = b.elements.given[k][e], step = now - b.before[k][e];
+        size += now * now;
+        change += step * step;
+      }
+    }
+    if (change <= tolerance * tolerance * size || sweep == kMostSweeps) return sweep;
+  }
+}
+
+void SoftBodies::project(const StepContext& context, std::size_t i, double dt) {
   SoftBody& b = *bodies_[i];
   if (!b.clusters.empty()) b.clusters.project(b.matching, dt * dt, columnsOf(i));
   if (!b.isStrain()) {
@@ -215,7 +297,7 @@ void SoftBodies::correct(const StepContext& context, std::size_t i, double dt) {
   });
 }
 
-void SoftBodies::move(const StepContext& context, const Part& part, std::size_t i) {
+void SoftBodies::move(const StepContext& context, const Part& part, double tolerance, std::size_t i) {
   const SoftBody& b = body(i);
   const std::size_t o = offset(i), end = o + b.points();
   const double dt = part.dt, time = context.time + part.begin * context.dt;
@@ -233,13 +315,15 @@ void SoftBodies::move(const StepContext& context, const Part& part, std::size_t 
     y_[k] += dt * (vy_[k] + dt * (g.y() + w * fy_[k]));
   }
   gravityImpulse_[i] += impulse;
-  correct(context, i, dt);
+  sweeps_[i] += correct(context, i, dt, tolerance);
+  if (b.tangled) untangle(i);
 }
 
 void SoftBodies::finish(const StepContext& context, const Part& part, std::size_t i) {
   const SoftBody& b = body(i);
   const std::size_t o = offset(i), end = o + b.points();
   const double dt = part.dt, time = context.time + part.begin * context.dt, rate = 1.0 / dt;
+  const Spin before = b.tangled ? spinOf(b, &fromX_[o], &fromY_[o], &vx_[o], &vy_[o]) : Spin();
   for (std::size_t k = o; k < end; ++k) {
     vx_[k] = rate * (x_[k] - fromX_[k]);
     vy_[k] = rate * (y_[k] - fromY_[k]);
@@ -253,7 +337,18 @@ void SoftBodies::finish(const StepContext& context, const Part& part, std::size_
     }
     gravityWork_[i] += work;
   }
-  if (b.def.damping > 0.0) damp(i, dt);
+  if (b.tangled) {
+    damp(i, 0.0);
+    // Large corrections one after the other turn the body; it is to spin as it did.
+    const Spin now = spinOf(b, &x_[o], &y_[o], &vx_[o], &vy_[o]);
+    const double change = b.anyPinned || now.inertia == 0.0 ? 0.0 : (before.angular - now.angular) / now.inertia;
+    for (std::size_t k = o; k < end; ++k) {
+      vx_[k] -= change * (y_[k] - now.center.y());
+      vy_[k] += change * (x_[k] - now.center.x());
+    }
+  } else if (b.def.damping > 0.0) {
+    damp(i, std::exp(-b.def.damping * dt));
+  }
 }
 
 }  // namespace froude

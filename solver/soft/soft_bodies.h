@@ -52,8 +52,9 @@ class SoftBodies {
   /// One sub-step. Particles meet fixed and scripted polygons, and free ones by what their motion is.
   /// Free bodies are pushed within the sub-step as if they were a part of it, and moved by that; their velocities are
   /// to be changed by the impulses.
-  void advance(const StepContext& context, const SoftSettings& settings, BodySet& bodies, ImpulseLedger& impulses,
-               StepStats& stats);
+  /// A fluid's particles that reach the outlines are parted from them by their masses; its pressure does not see them.
+  void advance(const StepContext& context, const SoftSettings& settings, BodySet& bodies, const MetFluid* fluid,
+               ImpulseLedger& impulses, StepStats& stats);
 
   SoftSums sums() const;
   SoftSums sumsOf(std::size_t i) const;
@@ -79,9 +80,10 @@ class SoftBodies {
   std::size_t offset(std::size_t i) const { return first_[i] + i; }  // into the work columns, with a dummy a body
   void load(const StepContext& context);
   void store();
-  void move(const StepContext& context, const Part& part, std::size_t i);
+  void move(const StepContext& context, const Part& part, double tolerance, std::size_t i);
   void feelStrain(const StepContext& context, std::size_t i);
-  void correct(const StepContext& context, std::size_t i, double dt);
+  int correct(const StepContext& context, std::size_t i, double dt, double tolerance);
+  void project(const StepContext& context, std::size_t i, double dt);
   void inflate(std::size_t i);
   double strainEnergyOf(std::size_t i) const;
   void meetObstacles(const StepContext& context, const Part& part, std::size_t i);
@@ -94,7 +96,8 @@ class SoftBodies {
   void forEachBody(Visit&& visit);
   SoftColumns columns();
   void meet(const StepContext& context, const Part& part, std::size_t i, std::size_t node);
-  void damp(std::size_t i, double dt);
+  void damp(std::size_t i, double keep);
+  void untangle(std::size_t i);
   void book(ImpulseLedger& impulses);
 
   ParticlePool pool_;
@@ -111,6 +114,7 @@ class SoftBodies {
   SoftPairs pairs_;
   PushedBodies pushed_;
   std::vector<Vec2> gravityImpulse_, touchImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
+  std::vector<int> sweeps_;                                           // by body, of the sub-step
   std::vector<double> gravityWork_;                                   // by body [J/m]
 };
 

@@ -1,5 +1,8 @@
 #include <froude/solver/soft/soft_body.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace froude {
 namespace {
 
@@ -140,6 +143,29 @@ std::size_t SoftBody::tornTriangles() const {
   if (!isStrain() || def.strainLimit == 0.0) return 0;
   for (std::size_t t = 0; t < def.mesh->triangles.size(); ++t) count += tornEdges(t) >= 2 ? 1 : 0;
   return count;
+}
+
+bool SoftBody::isTangled(const double* x, const double* y) const {
+  const TriangleMesh& mesh = *def.mesh;
+  if (!isStrain() || def.strainLimit > 0.0) return false;
+  bool far = false;
+  for (const auto& t : mesh.triangles) {
+    const Vec2 a(x[t[0]], y[t[0]]), b(x[t[1]], y[t[1]]), c(x[t[2]], y[t[2]]);
+    const double area = cross(Vec2(b - a), Vec2(c - a));
+    if (!(area > 0.0)) return true;
+    // Edges' squares over twice the area: 3.5 of the equilateral, 5.8 where six go round a point twice.
+    far = far || (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm() > 5.0 * area;
+  }
+  if (!far) return false;
+  around_.assign(points(), 0.0);
+  auto add = [&](std::uint32_t at, const Vec2& p, const Vec2& q) { around_[at] += std::atan2(cross(p, q), p.dot(q)); };
+  for (const auto& t : mesh.triangles) {
+    const Vec2 a(x[t[0]], y[t[0]]), b(x[t[1]], y[t[1]]), c(x[t[2]], y[t[2]]);
+    add(t[0], b - a, c - a);
+    add(t[1], c - b, a - b);
+    add(t[2], a - c, b - c);
+  }
+  return std::any_of(around_.begin(), around_.end(), [](double sum) { return sum > 2.1 * kPi; });
 }
 
 }  // namespace froude

@@ -96,7 +96,7 @@ void SoftBodies::meetFree(const StepContext& context, const Part& part, std::siz
 
 void SoftBodies::book(ImpulseLedger& impulses) {
   auto give = [&](const PairTouch& t) {
-    impulses.add(t.body, t.at, t.impulse, t.surface);
+    if (t.body != kByFluid) impulses.add(t.body, t.at, t.impulse, t.surface);
     touchImpulse_[t.soft] -= t.impulse;
   };
   for (const PairTouch& t : pairTouches_) give(t);

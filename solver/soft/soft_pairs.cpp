@@ -10,6 +10,7 @@ namespace froude {
 namespace {
 
 constexpr double kDeepest = 0.5;    // of an edge's length
+constexpr double kAhead = 1.1;      // of the sub-step: a part more than it may last
 constexpr double kWayOut = 5.0;     // edge lengths in a second
 constexpr double kNeighbour = 1.5;  // edge lengths apart at rest, or nearer: no contact of a body with itself
 constexpr double kSlack = 1.5;      // of the way that a point goes at its speed
@@ -198,8 +199,10 @@ void SoftPairs::findCorners(std::span<const std::unique_ptr<SoftBody>> softs, co
 }
 
 void SoftPairs::find(std::span<const std::unique_ptr<SoftBody>> softs, const SoftColumns& c, const BodySet& bodies,
-                     double dt) {
+                     const MetFluid* fluid, double duration) {
+  const double dt = kAhead * duration;
   pairs_.clear();
+  drops_.clear();
   if (edges_.empty()) return;
   sortEdges(c, dt);
   findCorners(softs, bodies, dt);
@@ -215,7 +218,9 @@ void SoftPairs::find(std::span<const std::unique_ptr<SoftBody>> softs, const Sof
     const Point& p = points_[k];
     const double reach = p.radius + kSlack * dt * at(c.vx, c.vy, p.node).norm();
     consider(k, at(c.x, c.y, p.node), reach, [&](const Edge& e) {
-      if (e.soft == p.soft) return e.a == p.node || e.b == p.node || areNeighbours(softs, p, e);
+      if (e.soft == p.soft) {
+        return softs[p.soft]->tangled || e.a == p.node || e.b == p.node || areNeighbours(softs, p, e);
+      }
       return !CollisionFilter{p.group, p.collidesWith}.accepts(e.group, e.collidesWith);
     });
   }
@@ -230,6 +235,32 @@ void SoftPairs::find(std::span<const std::unique_ptr<SoftBody>> softs, const Sof
       return !CollisionFilter{e.group, e.collidesWith}.accepts(def.group, def.collidesWith);
     });
   }
+  if (fluid == nullptr) return;
+  fluid_ = *fluid;
+  const Box reach = box_.grown(cell_ + fluid->radius);
+  const auto x = fluid->pool->x(), y = fluid->pool->y(), vx = fluid->pool->vx(), vy = fluid->pool->vy();
+  const auto first = static_cast<std::uint32_t>(points_.size() + corners_.size());
+  for (std::uint32_t k = 0; k < x.size(); ++k) {
+    const Vec2 end(x[k], y[k]), v(vx[k], vy[k]);
+    if (!reach.contains(end)) continue;
+    const std::size_t before = pairs_.size();
+    consider(first + static_cast<std::uint32_t>(drops_.size()), end, fluid->radius + kSlack * dt * v.norm(),
+             [&](const Edge& e) { return !fluid->filter.accepts(e.group, e.collidesWith); });
+    if (pairs_.size() > before) drops_.push_back({k, end - duration * v, v, {0.0, 0.0}, {0.0, 0.0}});
+  }
+}
+
+void SoftPairs::advanceFluid(double dt) {
+  for (Drop& d : drops_) d.push += dt * d.gain;
+}
+
+void SoftPairs::storeFluid(const MetFluid& fluid) const {
+  for (const Drop& d : drops_) {
+    fluid.pool->x()[d.index] += d.push.x();
+    fluid.pool->y()[d.index] += d.push.y();
+    fluid.pool->vx()[d.index] += d.gain.x();
+    fluid.pool->vy()[d.index] += d.gain.y();
+  }
 }
 
 SoftPairs::Place SoftPairs::placeOf(std::uint32_t number, const SoftColumns& c, const BodySet& bodies,
@@ -239,7 +270,19 @@ SoftPairs::Place SoftPairs::placeOf(std::uint32_t number, const SoftColumns& c, 
     return {
         at(c.x, c.y, p.node), at(c.fromX, c.fromY, p.node), p.radius, p.friction, c.inverseMass[p.node], -1, p.node};
   }
-  const Corner& corner = corners_[number - points_.size()];
+  number -= static_cast<std::uint32_t>(points_.size());
+  if (number >= corners_.size()) {
+    number -= static_cast<std::uint32_t>(corners_.size());
+    const Drop& d = drops_[number];
+    return {d.start + end * d.velocity + d.push,
+            d.start + begin * d.velocity + d.push - (end - begin) * d.gain,
+            fluid_.radius,
+            0.0,
+            fluid_.inverseMass,
+            kByFluid,
+            number};
+  }
+  const Corner& corner = corners_[number];
   const BodyMotion& m = bodies.motion(static_cast<std::size_t>(corner.body));
   Place place{{0.0, 0.0}, {0.0, 0.0}, 0.0, corner.friction, 0.0, corner.body, 0};
   place.x = Transform::of(m.position + end * m.velocity, m.angle + end * m.spin).toWorld(corner.local);
@@ -312,7 +355,12 @@ void SoftPairs::part(const Place& place, const Overlap& o, const SoftColumns& c,
   c.y[e.a] -= wa * amount.y();
   c.x[e.b] -= wb * amount.x();
   c.y[e.b] -= wb * amount.y();
-  if (place.body < 0) {
+  if (place.body == kByFluid) {
+    Drop& d = drops_[place.node];
+    d.push += place.inverseMass * amount;
+    d.gain += place.inverseMass / dt * amount;
+    touches.push_back({kByFluid, e.soft, place.x, amount / dt, {0.0, 0.0}});
+  } else if (place.body < 0) {
     c.x[place.node] += place.inverseMass * amount.x();
     c.y[place.node] += place.inverseMass * amount.y();
   } else {

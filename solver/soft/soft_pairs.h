@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <froude/fields/world_field.h>
+#include <froude/particles/pool.h>
 #include <froude/solver/rigid/body_set.h>
 #include <froude/solver/soft/soft_body.h>
 
@@ -52,6 +54,16 @@ struct SoftColumns {
   const double* inverseMass = nullptr;  // [m/kg]
 };
 
+/// The fluid that meets soft bodies: its particles are where the sub-step brought them.
+struct MetFluid {
+  ParticlePool* pool = nullptr;
+  double inverseMass = 0.0, radius = 0.0;  // of a particle [m/kg], [m]
+  CollisionFilter filter;
+};
+
+/// `body` of a touch by a particle of fluid: the impulse stays among what the accounts are about.
+inline constexpr int kByFluid = -2;
+
 /// A point and an edge that met, as the obstacle's owner feels it.
 struct PairTouch {
   int body;  // of the polygon, −1: none
@@ -68,7 +80,11 @@ class SoftPairs {
   void add(const SoftBody& body, std::size_t offset);
   /// The pairs that come near each other within dt [s].
   void find(std::span<const std::unique_ptr<SoftBody>> softs, const SoftColumns& columns, const BodySet& bodies,
-            double dt);
+            const MetFluid* fluid, double dt);
+  /// What fluid particles were pushed moves on for a part of dt [s].
+  void advanceFluid(double dt);
+  /// Gives the fluid's particles what they were pushed: places and velocities.
+  void storeFluid(const MetFluid& fluid) const;
   /// Parts what overlaps at the end of the part [begin, end] [s since the start of the sub-step].
   void resolve(const SoftColumns& columns, const BodySet& bodies, PushedBodies& pushed, double begin, double end,
                std::vector<PairTouch>& touches);
@@ -92,8 +108,13 @@ class SoftPairs {
     Vec2 local;
     double friction;
   };
+  struct Drop {
+    std::uint32_t index;   // in the fluid's pool
+    Vec2 start, velocity;  // over the sub-step [m], [m/s]
+    Vec2 push, gain;       // since its start [m], [m/s]
+  };
   struct Pair {
-    std::uint32_t point, edge;  // point: beyond the points, of a corner
+    std::uint32_t point, edge;  // point: beyond the points, of a corner; beyond them, of a drop
   };
   // How a point or corner stands to an edge at the end of a part.
   struct Overlap {
@@ -106,7 +127,7 @@ class SoftPairs {
     Vec2 x, from;
     double radius, friction, inverseMass;
     int body;            // of a corner; −1: a point of a soft body
-    std::uint32_t node;  // of a point
+    std::uint32_t node;  // of a point; of a drop its number
   };
   Place placeOf(std::uint32_t point, const SoftColumns& columns, const BodySet& bodies, const PushedBodies& pushed,
                 double begin, double end) const;
@@ -123,6 +144,8 @@ class SoftPairs {
   std::vector<Edge> edges_;
   std::vector<std::size_t> offsets_;
   std::vector<Corner> corners_;
+  std::vector<Drop> drops_;
+  MetFluid fluid_;
   std::vector<Pair> pairs_;
   // Cells of the edges' middles, counting sort.
   Vec2 origin_{0, 0};

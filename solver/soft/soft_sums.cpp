@@ -103,10 +103,9 @@ double SoftBodies::areaOf(std::size_t i) const {
 }
 
 // Relative to the motion of the body as a rigid whole, so that momentum and spin stay; towards rest where it is pinned.
-void SoftBodies::damp(std::size_t i, double dt) {
+void SoftBodies::damp(std::size_t i, double keep) {
   const SoftBody& b = body(i);
   const std::size_t o = offset(i);
-  const double keep = std::exp(-b.def.damping * dt);
   Vec2 center(0.0, 0.0), velocity(0.0, 0.0);
   double inertia = 0.0, angular = 0.0;
   if (!b.anyPinned) {

@@ -49,7 +49,7 @@ class SoftJudge {
       judgeMaterial(i);
       judgePins(i);
     }
-    judgeParticles();
+    judgeBullets();
     checkBodies();
     judgeOverlapsAmongSoft();
     sayHowManyMore();
@@ -66,17 +66,12 @@ class SoftJudge {
     draft_.warn(draft_.soft[i].place, draft_.soft[i].path + "." + key, text);
   }
 
-  void judgeParticles() {
-    const WorldDef& world = draft_.scene.world;
-    if (!world.fluid && !world.bullet) return;
-    const char* what = !world.bullet ? "fluid" : !world.fluid ? "bullets" : "fluid and bullets";
-    for (std::size_t i = 0; i < soft_.size(); ++i) {
-      if (!(world.fluid && mayMeet(soft_[i], world.fluid->group, world.fluid->collidesWith)) &&
-          !(world.bullet && mayMeet(soft_[i], world.bullet->group, world.bullet->collidesWith)))
-        continue;
+  void judgeBullets() {
+    const std::optional<BulletDef>& bullet = draft_.scene.world.bullet;
+    for (std::size_t i = 0; bullet && i < soft_.size(); ++i) {
+      if (!mayMeet(soft_[i], bullet->group, bullet->collidesWith)) continue;
       warn(i, "collides_with",
-           fmt::format("soft bodies and {} pass through each other in this version; right is a group of their own",
-                       what));
+           "soft bodies and bullets pass through each other in this version; right is a group of their own");
       return;
     }
   }

@@ -9,7 +9,6 @@
 namespace froude {
 namespace {
 
-using froude::testing::kFluid;
 using froude::testing::kHead;
 using froude::testing::loadText;
 using froude::testing::refusal;
@@ -242,9 +241,11 @@ TEST(SceneSoft, what_runs_but_is_probably_not_meant_is_said) {
   EXPECT_NE(warnings(kHead + "[[soft]]\nshape = { box = [0.2, 0.2, 1.2, 0.3] }\nspacing = 0.05\nyoung = 1e6\n")
                 .find("soft.soft0.spacing: puts about 1.8 triangles across the body"),
             std::string::npos);
-  EXPECT_NE(warnings(kJelly + kFluid).find("soft.jelly.collides_with: soft bodies and fluid pass through each other"),
-            std::string::npos);
-  EXPECT_EQ(warnings(kJelly + "collides_with = 2\n" + kFluid), "");
+  const std::string bullets = "[[bullet.block]]\nshape = { box = [0.0, 0.0, 0.3, 0.3] }\ncount = 3\n";
+  EXPECT_NE(
+      warnings(kJelly + bullets).find("soft.jelly.collides_with: soft bodies and bullets pass through each other"),
+      std::string::npos);
+  EXPECT_EQ(warnings(kJelly + "collides_with = 2\n" + bullets), "");
   EXPECT_NE(warnings(kJelly + "poisson = 0.499\n").find("soft.jelly.poisson: is above 0.49"), std::string::npos);
   EXPECT_NE(warnings(kHead + "[[soft]]\nname = \"slack\"\nshape = { box = [0.5, 0.2, 1.0, 0.7] }\nspacing = 0.1\n"
                              "young = 1.0e3\n")

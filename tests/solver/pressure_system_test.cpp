@@ -204,6 +204,16 @@ TEST(PressureSystem, edges_between_any_unknowns_are_solved_as_a_direct_factorisa
   EXPECT_LT((out.gather(s.kappa.data()) - exact).cwiseAbs().maxCoeff(), 2e-4 * exact.cwiseAbs().maxCoeff());
 }
 
+TEST(PressureSystem, a_cell_that_hangs_on_an_edge_alone_is_an_unknown) {
+  PressureScene scene(Tank::Surface, 20);
+  const std::size_t alone = scene.grid.place(7, 19);  // far above the surface
+  scene.coefficients.addEdge(alone, scene.grid.place(7, 3), 0.5);
+  scene.b[alone] = 1.0f;
+  const Solution s = solved(scene, 1e-6f);
+  EXPECT_TRUE(s.report.converged && !s.report.fallback);
+  EXPECT_NEAR(s.kappa[alone] - s.kappa[scene.grid.place(7, 3)], 2.0f, 1e-4f);
+}
+
 TEST(PressureSystem, every_closed_part_of_a_divided_tank_is_a_region_of_its_own) {
   PressureScene scene(Tank::Full, 33);
   for (int j = 0; j < 33; ++j) scene.wx[scene.grid.place(13, j)] = 0.0f;

@@ -20,7 +20,7 @@ class Viscosity : public FluidMethod {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Methods, Viscosity, kFluidMethods, methodName);
+INSTANTIATE_TEST_SUITE_P(Methods, Viscosity, kViscousMethods, methodName);
 
 TEST_P(Viscosity, the_solve_and_the_explicit_term_differ_to_first_order_in_the_sub_step) {
   const double wave = 2.0 * kPi, duration = 8.0 * kExplicitStep;

@@ -1,4 +1,4 @@
-// Ropes: the elastica under a load and under its own weight, hanging chains, a load a thousand times as heavy as its
+// Ropes: the elastica under its own weight, hanging chains, a load a thousand times as heavy as its
 // rope.
 #include <algorithm>
 #include <cmath>
@@ -35,21 +35,6 @@ class Bent final : public Measure {
   Vec2 exact_, sum_{0, 0};
   double count_ = 0.0;
 };
-
-/// A dead load on the end: the acceleration that its point feels [m/s²].
-void pullTip(scene::Scene& scene, double force) {
-  const SoftDef& def = scene.world.soft.at(0);
-  const TriangleMesh& mesh = *def.mesh;
-  std::vector<double> mass(mesh.points.size(), 0.0);
-  for (const auto& link : mesh.outline)
-    for (const std::uint32_t end : link)
-      mass[end] += 0.5 * def.density * def.thickness * (mesh.points[link[1]] - mesh.points[link[0]]).norm();
-  const auto last = static_cast<std::uint32_t>(mesh.points.size() - 1);
-  const double pull = -force / mass[last];
-  scene.world.force = [last, pull](const ForcePoint& p) {
-    return p.species == Species::Soft && p.index == last ? Vec2(0.0, pull) : Vec2(0.0, 0.0);
-  };
-}
 
 /// Joints of a chain, from a table of their places at rest.
 std::vector<Vec2> jointsOf(int links) {
@@ -114,18 +99,7 @@ class HeavyBox final : public Measure {
   double worst_ = 0.0, last_ = 0.0, box_ = 0.0;
 };
 
-// P L²/EI = 5 and w L³/EI = 8, both with a strip of L = 1 m, h = 0.02 m, E = 3.75e6: EI = 2.5 N·m.
-const Registered kLoad{
-    {.name = "elastica_load",
-     .measures = "a strip bent by a dead load on its end, P L²/EI = 5: Bisshopp & Drucker 1945",
-     .scene = "elastica",
-     .every = 0.02,
-     .full = {{0.05, 0.025, 0.0125}, {{"gravity", "[0.0, 0.0]"}}},
-     .quick = {{0.1}, {{"gravity", "[0.0, 0.0]"}, {"duration", "1.0"}}},
-     .measure = [](const scene::Scene& s) { return std::make_unique<Bent>(s, Vec2(-0.3876283607, -0.7137915236)); },
-     .softModels = {"rope"},
-     .edit = [](scene::Scene& s) { pullTip(s, 12.5); }}};
-
+// A strip of L = 1 m, h = 0.02 m, E = 3.75e6: EI = 2.5 N·m.
 const Registered kWeight{
     {.name = "elastica_weight",
      .measures = "a strip bent by its own weight, w L³/EI = 8: the elastica, by shooting",

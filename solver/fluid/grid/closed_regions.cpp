@@ -4,26 +4,23 @@
 #include <bit>
 #include <cmath>
 
+#include <froude/base/parallel.h>
+
 namespace froude {
 namespace {
 
+constexpr std::size_t kTileBlock = 32;  // tiles a task
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 // Share of a body's entries in a region that may be left over from a closed outline, for which they add up to nothing.
 constexpr double kNothing = 1e-4;
 
-// Bit i where values[i] > 0, of 16.
-std::uint32_t positive(const float* values) {
-  std::uint32_t bits = 0;
-  for (std::uint32_t i = 0; i < 16; ++i) bits |= static_cast<std::uint32_t>(values[i] > 0.0f) << i;
-  return bits;
-}
-
 }  // namespace
 
-void ClosedRegions::find(const TileGrid& grid, const PressureCoefficients& coefficients, const float* inverse,
-                         std::span<const PressureBody> bodies) {
+void ClosedRegions::find(const GridLoops& loops, const TileGrid& grid, const PressureCoefficients& coefficients,
+                         const float* inverse, std::span<const PressureBody> bodies) {
+  findBits(loops, grid, coefficients, inverse);
   findRuns(grid, coefficients, inverse);
-  joinRows(grid, coefficients);
+  joinRows(grid);
   for (const PressureEdge& edge : coefficients.edges) {
     if (edge.coefficient > 0.0f) join(runOf(edge.a), runOf(edge.b));
   }
@@ -34,6 +31,17 @@ void ClosedRegions::find(const TileGrid& grid, const PressureCoefficients& coeff
   listRegions();
 }
 
+void ClosedRegions::findBits(const GridLoops& loops, const TileGrid& grid, const PressureCoefficients& coefficients,
+                             const float* inverse) {
+  for (AlignedArray<std::uint16_t>* bits : {&known_, &left_, &down_, &ground_}) bits->resize(16 * grid.size() + 16);
+  parallelFor(grid.size() + 1, kTileBlock, [&](std::size_t begin, std::size_t end) {
+    loops.positive(inverse, known_.data(), begin, end);
+    loops.positive(coefficients.ax.data(), left_.data(), begin, end);
+    loops.positive(coefficients.ay.data(), down_.data(), begin, end);
+    loops.positive(coefficients.ground.data(), ground_.data(), begin, end);
+  });
+}
+
 void ClosedRegions::findRuns(const TileGrid& grid, const PressureCoefficients& coefficients, const float* inverse) {
   runs_.clear();
   grounded_.clear();
@@ -41,13 +49,12 @@ void ClosedRegions::findRuns(const TileGrid& grid, const PressureCoefficients& c
   rowFirst_.resize(rows);
   rowStarts_.resize(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::uint32_t known = positive(inverse + 16 * row),
-                        linked = positive(coefficients.ax.data() + 16 * row) & ~1u;
+    const std::uint32_t known = known_[row], linked = left_[row] & ~1u;
     std::uint32_t starts = known & ~(linked & (known << 1));
     rowFirst_[row] = static_cast<std::uint32_t>(runs_.size());
     rowStarts_[row] = static_cast<std::uint16_t>(starts);
     if (starts == 0) continue;
-    const std::uint32_t ground = positive(coefficients.ground.data() + 16 * row);
+    const std::uint32_t ground = ground_[row];
     while (starts != 0) {
       const auto begin = static_cast<std::uint32_t>(std::countr_zero(starts));
       starts &= starts - 1;
@@ -89,18 +96,17 @@ void ClosedRegions::join(std::uint32_t a, std::uint32_t b) {
   parent_[std::max(a, b)] = std::min(a, b);
 }
 
-void ClosedRegions::joinRows(const TileGrid& grid, const PressureCoefficients& coefficients) {
-  const float *ax = coefficients.ax.data(), *ay = coefficients.ay.data();
+void ClosedRegions::joinRows(const TileGrid& grid) {
   for (std::size_t t = 1; t <= grid.size(); ++t) {
     const Tile& tile = grid.tile(t);
     for (std::size_t j = 0; j < 16; ++j) {
       const std::size_t row = 16 * t + j;
       if (rowStarts_[row] == 0) continue;
       const std::size_t left = 16 * (16 * tile.left + j) + static_cast<std::size_t>(grid.tile(tile.left).columns - 1);
-      if (ax[16 * row] > 0.0f) join(runOf(16 * row), runOf(left));
+      if ((left_[row] & 1u) != 0) join(runOf(16 * row), runOf(left));
       const std::size_t below =
           j > 0 ? row - 1 : 16 * tile.down + static_cast<std::size_t>(grid.tile(tile.down).rows - 1);
-      const std::uint32_t linked = positive(ay + 16 * row);
+      const std::uint32_t linked = down_[row];
       // Once for each pair of runs: where a column left of this one joins the same two, nothing is new.
       const std::uint32_t starts = rowStarts_[row] | rowStarts_[below];
       for (std::uint32_t fresh = linked & ~((linked << 1) & ~starts); fresh != 0; fresh &= fresh - 1) {
@@ -160,9 +166,9 @@ float ClosedRegions::removeMeans(float* field) const {
   sums_.clear();
   sums_.resize(sizes_.size());
   for (const Piece& piece : pieces_) {
-    double sum = 0.0;
-    for (std::uint32_t k = 0; k < piece.length; ++k) sum += static_cast<double>(field[piece.place + k]);
-    sums_[piece.region] += sum;
+    float sum = 0.0f;  // of at most 16
+    for (std::uint32_t k = 0; k < piece.length; ++k) sum += field[piece.place + k];
+    sums_[piece.region] += static_cast<double>(sum);
   }
   double most = 0.0;
   for (std::size_t r = 0; r < sizes_.size(); ++r) {

@@ -6,6 +6,7 @@
 
 #include <froude/base/aligned.h>
 #include <froude/fields/tile_grid.h>
+#include <froude/solver/fluid/grid/grid_loops.h>
 #include <froude/solver/fluid/grid/pressure_system.h>
 
 namespace froude {
@@ -14,8 +15,8 @@ class ClosedRegions {
  public:
   /// `inverse`: by place, > 0 for unknowns. Rows of cells that hang together are joined by union-find; cost a few
   /// nanoseconds a run of cells, without allocation in a steady state. Regions are numbered by their first cell.
-  void find(const TileGrid& grid, const PressureCoefficients& coefficients, const float* inverse,
-            std::span<const PressureBody> bodies);
+  void find(const GridLoops& loops, const TileGrid& grid, const PressureCoefficients& coefficients,
+            const float* inverse, std::span<const PressureBody> bodies);
 
   int count() const { return static_cast<int>(sizes_.size()); }
   /// Subtracts its mean from each region; returns the largest |mean|. Sums run in the order of places.
@@ -33,11 +34,15 @@ class ClosedRegions {
   std::uint32_t runOf(std::size_t place) const;
   std::uint32_t root(std::uint32_t run);
   void join(std::uint32_t a, std::uint32_t b);
+  void findBits(const GridLoops& loops, const TileGrid& grid, const PressureCoefficients& coefficients,
+                const float* inverse);
   void findRuns(const TileGrid& grid, const PressureCoefficients& coefficients, const float* inverse);
-  void joinRows(const TileGrid& grid, const PressureCoefficients& coefficients);
+  void joinRows(const TileGrid& grid);
   void groundBodies(std::span<const PressureBody> bodies);
   void listRegions();
 
+  // By row of a tile, a bit for each column: unknowns, coupled to the left, coupled below, grounded.
+  AlignedArray<std::uint16_t> known_, left_, down_, ground_;
   AlignedArray<Run> runs_;
   AlignedArray<std::uint32_t> parent_;
   AlignedArray<std::uint8_t> grounded_;    // by run, then by root

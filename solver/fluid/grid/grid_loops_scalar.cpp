@@ -20,7 +20,7 @@ float neighbours(const GridOperator& a, const float* x, std::size_t t, std::int3
 template <typename Body>
 void eachCell(const GridOperator& a, std::size_t begin, std::size_t end, Body&& body) {
   for (std::size_t t = begin; t < end; ++t) {
-    for (std::int32_t j = 0; j < a.links[t].rows; ++j) {
+    for (std::int32_t j = a.links[t].first; j < a.links[t].end; ++j) {
       for (std::int32_t i = 0; i <= a.links[t].lane; ++i) body(t, i, j, t * 256 + static_cast<std::size_t>(16 * j + i));
     }
   }
@@ -28,6 +28,59 @@ void eachCell(const GridOperator& a, std::size_t begin, std::size_t end, Body&& 
 
 void clearSums(double* sums, std::size_t begin, std::size_t end) {
   if (sums != nullptr) std::fill(sums + begin, sums + end, 0.0);
+}
+
+void assemble(const GridAssembly& a, double* sums, std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin; t < end; ++t) {
+    TileLinks& link = a.links[t];
+    link.first = link.end = 0;
+    sums[t] = 0.0;
+    for (std::int32_t j = 0; j < 16; ++j) {
+      for (std::int32_t i = 0; i < 16; ++i) {
+        const auto row = static_cast<std::size_t>(16 * j);
+        const std::size_t at = t * 256 + row + static_cast<std::size_t>(i);
+        if (i > link.lane || j >= link.rows) {
+          a.ar[at] = a.diagonal[at] = a.inverse[at] = 0.0f;
+          continue;
+        }
+        a.ar[at] = a.ax[i == link.lane ? link.right + row : at + 1];
+        const float above = a.ay[j == link.rows - 1 ? link.up + static_cast<std::size_t>(i) : at + 16];
+        const float joined = (a.ax[at] + a.ar[at]) + (a.ay[at] + above);
+        sums[t] += static_cast<double>(joined);
+        a.diagonal[at] = joined + a.ground[at];
+        a.inverse[at] = a.diagonal[at] > 0.0f ? 1.0f / a.diagonal[at] : 0.0f;
+        if (a.inverse[at] > 0.0f) {
+          if (link.end == 0) link.first = j;
+          link.end = j + 1;
+        }
+      }
+    }
+  }
+}
+
+void coarsen(const GridCoarsening& a, std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin; t < end; ++t) {
+    for (std::size_t j = 0; j < 8; ++j) {
+      for (std::size_t i = 0; i < 8; ++i) {
+        const std::size_t at = t * 256 + 32 * j + 2 * i, to = a.parents[t].place + 16 * j + i;
+        a.coarseX[to] = 0.5f * (a.ax[at] + a.ax[at + 16]);
+        a.coarseY[to] = 0.5f * (a.ay[at] + a.ay[at + 1]);
+        a.coarseGround[to] = a.share * ((a.ground[at] + a.ground[at + 16]) + (a.ground[at + 1] + a.ground[at + 17]));
+      }
+    }
+  }
+}
+
+void positive(const float* values, std::uint16_t* bits, std::size_t begin, std::size_t end) {
+  for (std::size_t row = 16 * begin; row < 16 * end; ++row) {
+    std::uint32_t word = 0;
+    for (std::uint32_t i = 0; i < 16; ++i) word |= static_cast<std::uint32_t>(values[16 * row + i] > 0.0f) << i;
+    bits[row] = static_cast<std::uint16_t>(word);
+  }
+}
+
+void clean(const GridOperator& a, float* x, std::size_t begin, std::size_t end) {
+  for (std::size_t k = begin * 256; k < end * 256; ++k) x[k] = a.inverse[k] > 0.0f ? x[k] : 0.0f;
 }
 
 void apply(const GridOperator& a, const float* x, float* q, double* sums, std::size_t begin, std::size_t end) {
@@ -66,7 +119,7 @@ void restrictResidual(const GridOperator& a, const float* r, const float* x, con
                       std::size_t begin, std::size_t end) {
   for (std::size_t t = begin; t < end; ++t) {
     float* to = coarse + parents[t].place;
-    for (std::size_t j = 0; j < 8; ++j) std::fill(to + 16 * j, to + 16 * j + 8, 0.0f);
+    for (std::int32_t j = a.links[t].first / 2; 2 * j < a.links[t].end; ++j) std::fill_n(to + 16 * j, 8, 0.0f);
   }
   eachCell(a, begin, end, [&](std::size_t t, std::int32_t i, std::int32_t j, std::size_t at) {
     const auto place = parents[t].place + static_cast<std::size_t>(16 * (j / 2) + i / 2);
@@ -92,14 +145,16 @@ void advance(const GridOperator& a, float step, const float* p, const float* q, 
   });
 }
 
-void direct(const float* z, float share, float* p, std::size_t begin, std::size_t end) {
-  for (std::size_t k = begin * 256; k < end * 256; ++k) p[k] = z[k] + share * p[k];
+void direct(const GridOperator& a, const float* z, float share, float* p, std::size_t begin, std::size_t end) {
+  eachCell(a, begin, end,
+           [&](std::size_t, std::int32_t, std::int32_t, std::size_t at) { p[at] = z[at] + share * p[at]; });
 }
 
 }  // namespace
 
 const GridLoops& scalarGridLoops() {
-  static constexpr GridLoops kLoops{apply, residual, smooth, start, restrictResidual, prolong, advance, direct};
+  static constexpr GridLoops kLoops{assemble, coarsen, positive,         clean,   apply,   residual,
+                                    smooth,   start,   restrictResidual, prolong, advance, direct};
   return kLoops;
 }
 

@@ -10,8 +10,9 @@
 namespace froude {
 namespace {
 
-constexpr std::size_t kTileBlock = 8;    // tiles a task
-constexpr std::size_t kMostLevels = 28;  // coordinates of cells have 31 bits
+constexpr std::size_t kTileBlock = 8;     // tiles a task
+constexpr std::size_t kSharedTiles = 32;  // fewer are one task: sooner done than shared
+constexpr std::size_t kMostLevels = 28;   // coordinates of cells have 31 bits
 // Of what ties four cells to κ = 0, the share that ties their coarse cell: ½ keeps the distance of a straight surface
 // in coarse cells, 1 in fine ones.
 constexpr float kGroundShare = 0.7f;
@@ -31,7 +32,9 @@ std::span<const float> weightsOf(std::size_t level) {
 
 template <typename Body>
 void overTiles(Crew& crew, const GridLevel& level, Body&& body) {
-  crew.stage(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) { body(begin + 1, end + 1); });
+  const std::size_t count = level.grid->size();
+  crew.stage(count, count < kSharedTiles ? count : kTileBlock,
+             [&](std::size_t begin, std::size_t end) { body(begin + 1, end + 1); });
 }
 
 // Added in the order of the tiles: the same bits on any number of threads.
@@ -81,49 +84,50 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
   linkTiles(level);
   const bool finest = &level == &levels_[0];
   const std::size_t places = finest ? ground.size() : level.grid->values();
-  for (AlignedArray<float>* a : {&level.ar, &level.r, &level.one, &level.two}) {
+  for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
     a->clear();
     a->resize(places);
   }
-  level.diagonal.resize(places);
-  level.inverse.resize(places);
+  for (AlignedArray<float>* a : {&level.ar, &level.diagonal, &level.inverse}) {
+    a->resize(places);
+    std::fill_n(a->data(), TileGrid::kCells, 0.0f);
+  }
   level.sums.resize(level.tiles());
-  std::fill_n(level.diagonal.data(), TileGrid::kCells, 0.0f);
-  std::fill_n(level.inverse.data(), TileGrid::kCells, 0.0f);
+  const GridAssembly parts{level.links.data(),    ax.data(),           ay.data(), ground.data(), level.ar.data(),
+                           level.diagonal.data(), level.inverse.data()};
   parallelFor(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin + 1; t < end + 1; ++t) {
-      const TileLinks& link = level.links[t];
-      float coupled = 0.0f;
-      for (std::int32_t j = 0; j < 16; ++j) {
-        const std::size_t row = t * TileGrid::kCells + static_cast<std::size_t>(16 * j);
-        const std::size_t above = j == link.rows - 1 ? link.up : (j == 15 ? 0 : row + 16);
-        float* ar = level.ar.data() + row;
-        for (std::int32_t i = 0; i < link.lane; ++i) ar[i] = ax[row + static_cast<std::size_t>(i) + 1];
-        if (j < link.rows) ar[link.lane] = ax[link.right + static_cast<std::size_t>(16 * j)];
-        const float* au = ay.data() + above;
-        for (std::size_t i = 0; i < 16; ++i) {
-          const float joined = (ax[row + i] + ar[i]) + (ay[row + i] + au[i]);
-          coupled += joined;
-          level.diagonal[row + i] = joined + ground[row + i];
-        }
-      }
-      level.sums[t] = static_cast<double>(coupled);
-    }
+    loops_->assemble(parts, level.sums.data(), begin + 1, end + 1);
   });
   level.coupled = sumOf(level) > 0.0;
-  if (finest) {
-    for (std::size_t k = level.grid->values(); k < places; ++k) level.diagonal[k] = ground[k];
-    for (const PressureEdge& edge : coefficients_->edges) {
-      level.diagonal[edge.a] += edge.coefficient;
-      level.diagonal[edge.b] += edge.coefficient;
-      level.coupled = true;
-    }
-  }
-  for (std::size_t k = TileGrid::kCells; k < places; ++k) {
-    level.inverse[k] = level.diagonal[k] > 0.0f ? 1.0f / level.diagonal[k] : 0.0f;
-  }
+  if (finest) addEdges();
   level.matrix = {level.links.data(),    ax.data(),           level.ar.data(), ay.data(),
                   level.diagonal.data(), level.inverse.data()};
+}
+
+// Into the finest level's diagonal.
+void Multigrid::addEdges() {
+  GridLevel& level = levels_[0];
+  const auto invert = [&](std::size_t k) {
+    level.inverse[k] = level.diagonal[k] > 0.0f ? 1.0f / level.diagonal[k] : 0.0f;
+  };
+  for (std::size_t k = level.grid->values(); k < level.diagonal.size(); ++k) {
+    level.diagonal[k] = coefficients_->ground[k];
+    invert(k);
+  }
+  const auto add = [&](std::size_t k, float coefficient) {
+    level.diagonal[k] += coefficient;
+    invert(k);
+    if (k >= level.grid->values() || !(level.inverse[k] > 0.0f)) return;
+    TileLinks& link = level.links[k / TileGrid::kCells];  // whose rows may have had no other unknown
+    const auto row = static_cast<std::int32_t>(k % TileGrid::kCells / 16);
+    link.first = link.end == 0 ? row : std::min(link.first, row);
+    link.end = std::max(link.end, row + 1);
+  };
+  for (const PressureEdge& edge : coefficients_->edges) {
+    add(edge.a, edge.coefficient);
+    add(edge.b, edge.coefficient);
+    level.coupled = true;
+  }
 }
 
 void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
@@ -137,24 +141,19 @@ void Multigrid::coarsen(GridLevel& fine, GridLevel& coarse) {
   coarse.grid = &coarse.own;
   for (AlignedArray<float>* a : {&coarse.ax, &coarse.ay, &coarse.ground}) coarse.own.clear(*a);
   fine.parents.resize(fine.tiles());
-  const float *ax = fine.matrix.ax, *ay = fine.matrix.ay;
+  for (std::size_t t = 1; t < fine.tiles(); ++t) {
+    const TileIndex at = grid.tile(t).at;
+    fine.parents[t].place = coarse.own.find(at.x >> 1, at.y >> 1) * static_cast<std::uint32_t>(TileGrid::kCells) +
+                            static_cast<std::uint32_t>((at.y & 1) * 128 + (at.x & 1) * 8);
+  }
   const float* ground = &fine == &levels_[0] ? coefficients_->ground.data() : fine.ground.data();
-  parallelFor(grid.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin + 1; t < end + 1; ++t) {
-      const TileIndex at = grid.tile(t).at;
-      const std::size_t corner = coarse.own.find(at.x >> 1, at.y >> 1) * TileGrid::kCells +
-                                 static_cast<std::size_t>((at.y & 1) * 128 + (at.x & 1) * 8);
-      fine.parents[t].place = static_cast<std::uint32_t>(corner);
-      for (std::size_t j = 0; j < 8; ++j) {
-        for (std::size_t i = 0; i < 8; ++i) {
-          const std::size_t k = t * TileGrid::kCells + 32 * j + 2 * i, to = corner + 16 * j + i;
-          coarse.ax[to] = period.x == 1 ? 0.0f : 0.5f * (ax[k] + ax[k + 16]);
-          coarse.ay[to] = period.y == 1 ? 0.0f : 0.5f * (ay[k] + ay[k + 1]);
-          coarse.ground[to] = kGroundShare * ((ground[k] + ground[k + 1]) + (ground[k + 16] + ground[k + 17]));
-        }
-      }
-    }
-  });
+  const GridCoarsening parts{fine.matrix.ax, fine.matrix.ay,   ground,           fine.parents.data(),
+                             kGroundShare,   coarse.ax.data(), coarse.ay.data(), coarse.ground.data()};
+  parallelFor(grid.size(), kTileBlock,
+              [&](std::size_t begin, std::size_t end) { loops_->coarsen(parts, begin + 1, end + 1); });
+  // What is its own neighbour is coupled to nothing.
+  if (period.x == 1) coarse.own.clear(coarse.ax);
+  if (period.y == 1) coarse.own.clear(coarse.ay);
 }
 
 // An extra unknown is corrected with the cell of the grid to which it is coupled most, or with that of a neighbour.

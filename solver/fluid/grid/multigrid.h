@@ -60,6 +60,7 @@ class Multigrid {
  private:
   void finish(GridLevel& level, const AlignedArray<float>& ax, const AlignedArray<float>& ay,
               const AlignedArray<float>& ground);
+  void addEdges();
   void coarsen(GridLevel& fine, GridLevel& coarse);
   void findAnchors();
   void joinExtras(GridLevel& coarse) const;

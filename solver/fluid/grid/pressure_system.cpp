@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kTileBlock = 8;  // tiles a task
 // Of the largest κ: what five terms in single precision cannot tell from zero.
 constexpr float kRounding = 1e-6f;
-constexpr std::size_t kUsefulTiles = 2048 / TileGrid::kCells;  // below, one thread is quicker
+constexpr std::size_t kUsefulTiles = 64;  // below, one thread is quicker
 
 }  // namespace
 
@@ -86,7 +86,7 @@ void PressureSystem::prepare(const TileGrid& grid, const PressureCoefficients& c
   d.coefficients = &coefficients;
   d.bodies = bodies;
   d.levels.build(grid, coefficients);
-  d.regions.find(grid, coefficients, d.levels.finest().inverse.data(), bodies);
+  d.regions.find(*d.loops, grid, coefficients, d.levels.finest().inverse.data(), bodies);
   for (AlignedArray<float>* a : {&d.r, &d.p, &d.q}) {
     a->clear();
     a->resize(coefficients.ground.size());
@@ -170,8 +170,9 @@ PressureReport PressureSystem::Data::iterate(Crew& crew, float* kappa, const Lim
     const float* z = levels.cycle(crew, r.data(), product);
     const auto share = static_cast<float>(report.iterations == 0 ? 0.0 : product / before);
     before = product;
-    crew.stage(grid->size(), kTileBlock,
-               [&](std::size_t begin, std::size_t end) { loops->direct(z, share, p.data(), begin + 1, end + 1); });
+    crew.stage(grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+      loops->direct(levels.finest().matrix, z, share, p.data(), begin + 1, end + 1);
+    });
     for (std::size_t k = grid->values(); k < r.size(); ++k) p[k] = z[k] + share * p[k];
     const double curvature = apply(crew);
     if (!(curvature > 0.0) || !std::isfinite(product)) break;
@@ -186,7 +187,8 @@ PressureReport PressureSystem::solve(const float* b, float* kappa, const Limits&
   Data& d = *data_;
   PressureReport report;
   const AlignedArray<float>& inverse = d.levels.finest().inverse;
-  for (std::size_t k = 0; k < inverse.size(); ++k) kappa[k] = inverse[k] > 0.0f ? kappa[k] : 0.0f;
+  d.loops->clean(d.levels.finest().matrix, kappa, 0, d.grid->size() + 1);
+  for (std::size_t k = d.grid->values(); k < inverse.size(); ++k) kappa[k] = inverse[k] > 0.0f ? kappa[k] : 0.0f;
   d.p.clear();
   d.p.resize(inverse.size());
   float source = 0.0f;
