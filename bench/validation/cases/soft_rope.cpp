@@ -13,8 +13,7 @@ namespace {
 
 constexpr double kReadFrom = 0.9;  // of the run: means at rest are taken from here on
 
-/// Where the end of a strip of length 1 comes to rest, against the elastica (tables of shared/reference, by shooting
-/// and by elliptic integrals).
+/// Where the end of a strip of length 1 comes to rest, against the elastica (by shooting).
 class Bent final : public Measure {
  public:
   Bent(const scene::Scene& scene, const Vec2& exact)
