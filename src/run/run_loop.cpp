@@ -142,7 +142,8 @@ void RunLoop::countWallTime() {
 
 std::size_t RunLoop::liveParticles() const {
   return (world_.fluid() != nullptr ? world_.fluid()->size() : 0) +
-         (world_.bullets() != nullptr ? world_.bullets()->size() : 0);
+         (world_.bullets() != nullptr ? world_.bullets()->size() : 0) +
+         (world_.soft() != nullptr ? world_.soft()->size() : 0);
 }
 
 }  // namespace froude::run

@@ -120,6 +120,9 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
       if (model.has(key)) model.fail(key, "a key of wcsph alone, right is to leave it out or fluid = \"wcsph\"");
     }
   }
+  SoftSettings& soft = draft.scene.world.softSettings;
+  if (model.has("soft_substeps")) soft.substeps = static_cast<int>(model.integer("soft_substeps", 1, 1000000));
+  if (const auto tolerance = model.optionalNumber("soft_tolerance", Range::positive(1.0))) soft.tolerance = *tolerance;
   draft.scene.world.timeStep = model.optionalNumber("time_step", Range::positive(1e6));
   draft.timeStepPlace = model.place("time_step");
   if (model.has("spacing")) draft.spacingPlace = model.place("spacing");
@@ -157,10 +160,10 @@ void readFluid(TableReader& root, Draft& draft) {
   const bool used = !draft.fluidBlocks.empty() || draft.fluidEmitted;
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
-  TableReader model =
-      tableOrEmpty(root, "model",
-                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support", "sound_speed",
-                    "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"});
+  TableReader model = tableOrEmpty(root, "model",
+                                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support",
+                                    "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure",
+                                    "equation_of_state", "soft_substeps", "soft_tolerance"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;
