@@ -73,6 +73,10 @@ void removeRunFiles(const std::string& folder) {
     removeFiles(folder + "/frames", isSegment);
     rmdir((folder + "/frames").c_str());  // stays if something foreign is in it
   }
+  // What tells that this is a run goes last: a process that is killed in between leaves a folder that may be replaced.
+  removeFiles(folder,
+              [](std::string_view name) { return isRunFile(name) && name != "scene.toml" && name != "summary.json"; });
+  removeFiles(folder, [](std::string_view name) { return name == "summary.json"; });
   removeFiles(folder, isRunFile);
 }
 

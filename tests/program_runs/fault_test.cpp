@@ -59,7 +59,8 @@ class Faults : public ProgramTest {
     if (!fs::exists(path(straight))) {
       Words run{"run", scene, "-o", straight, "--quiet"};
       run.insert(run.end(), words.begin(), words.end());
-      EXPECT_EQ(froude(run).code, 0) << scene;
+      endOf_[straight] = froude(run).code;  // a scene that cannot be stepped to its end ends so after kills too
+      EXPECT_TRUE(endOf_[straight] == 0 || endOf_[straight] == 3) << scene << endOf_[straight];
     }
     const double whole = summary(straight)["wall_seconds"].get<double>();
     int kills = 0;
@@ -74,7 +75,7 @@ class Faults : public ProgramTest {
         process.signal(SIGKILL);
       }
       const Outcome outcome = process.wait();
-      EXPECT_TRUE(outcome.code == 0 || outcome.code == -SIGKILL) << scene << outcome.code << outcome.err;
+      EXPECT_TRUE(outcome.code == endOf_[straight] || outcome.code == -SIGKILL) << scene << outcome.code << outcome.err;
       ended = outcome.code != -SIGKILL;
       kills += ended ? 0 : 1;
     }
@@ -88,6 +89,7 @@ class Faults : public ProgramTest {
 
  private:
   std::vector<std::string> mounted_;
+  std::map<std::string, int> endOf_;  // exit codes of the runs that were left alone
 };
 
 using LongFaults = Faults;

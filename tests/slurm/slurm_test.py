@@ -124,7 +124,7 @@ class SlurmTest(unittest.TestCase):
     def setUpClass(cls):
         cls.home = tempfile.mkdtemp(prefix="froude-slurm-")
         cls.cluster = Cluster(cls.home)
-        for name, duration in (("short", 0.2), ("long", 6.0)):
+        for name, duration in (("short", 0.2), ("long", 200.0)):
             with open(os.path.join(cls.home, name + ".toml"), "w", encoding="utf-8") as file:
                 file.write(SCENE.format(duration=duration))
 
@@ -178,7 +178,8 @@ class SlurmTest(unittest.TestCase):
     def test_the_signal_before_the_time_limit_saves_and_queues_again(self):
         job = self.hand_in("long.toml", "-o", "limited", "--sweep", "seed=3,4")
         self.cluster.wait(lambda: os.path.exists(self.path("limited", "seed=3", "checkpoint.h5")), "a checkpoint")
-        self.cluster.run("scancel", "--batch", "--signal=TERM", job + "_0")  # what Slurm sends a minute before the limit
+        sent = self.cluster.run("scancel", "--batch", "--signal=TERM", job + "_0")  # as Slurm does a minute before the limit
+        self.assertEqual(sent.returncode, 0, sent.stderr)
         self.wait_for_end()
         self.assertEqual(self.log("limited").count("limited/seed=3\n"), 2, self.log("limited"))  # stopped, and done
         self.check_against_here("limited")
