@@ -39,7 +39,7 @@ class Wcsph final : public ParticleFluid {
   ForceLoop forceLoop(float* ux, float* uy);
   RateLoop rateLoop(const float* ux, const float* uy);
   void accelerate(const StepContext& context, const ForceLoop& loop);
-  void kick(const StepContext& context, int steps);
+  void kick(const StepContext& context, int step, int steps);
   void compress(const StepContext& context, const RateLoop& loop);
   void compressAndDrift(const StepContext& context, int steps, bool last);
   void quietFilms();
@@ -57,6 +57,8 @@ class Wcsph final : public ParticleFluid {
   std::vector<std::array<double, 2>> pairSums_;  // by task
   Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]
   AlignedArray<float> share_;  // of a gain of density
+  // 1: its density does not change. It would bounce on a wall, which has to stop it as it does in the other methods.
+  AlignedArray<std::uint8_t> alone_;
 };
 
 }  // namespace froude
