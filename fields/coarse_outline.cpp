@@ -7,7 +7,7 @@ namespace froude {
 
 namespace {
 
-constexpr double kShort = 0.5;        // an edge, in spacings
+constexpr double kShort = 0.75;       // an edge, in spacings
 constexpr double kMost = 1.0 / 16.0;  // that the outline may move, in spacings
 
 double distanceToSegment(const Vec2& a, const Vec2& b, const Vec2& p) {

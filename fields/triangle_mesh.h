@@ -46,8 +46,8 @@ inline constexpr double kLeastMeshAngle = 10.0 * kPi / 180.0;
 FROUDE_API TriangleMesh triangleMesh(const Polygon& polygon, double spacing);
 
 /// The polygon without detail that triangles of this spacing cannot follow: vertices are left out next to edges shorter
-/// than half a spacing, as long as the outline moves by less than a 16th of it. The polygon itself where nothing can
-/// go. Cost: O(edges²) at worst.
+/// than three quarters of a spacing, as long as the outline moves by less than a 16th of it. The polygon itself where
+/// nothing can go. Cost: O(edges²) at worst.
 FROUDE_API Polygon coarseOutline(const Polygon& polygon, double spacing);
 
 }  // namespace froude

@@ -1,11 +1,8 @@
 #include <froude/particles/cell_grid.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
-#include <utility>
 
 #include <froude/base/assert.h>
 #include <froude/base/parallel.h>
@@ -14,11 +11,6 @@ namespace froude {
 namespace {
 
 constexpr double kMaxCells = 1073741824.0;  // 2³⁰: 4 GiB of offsets
-
-// Below this a second thread costs more than it saves.
-constexpr std::size_t kSerialParticles = 16384;
-constexpr std::size_t kMaxChunks = 16;
-constexpr std::size_t kCellBlock = 8192;
 
 std::int32_t cellsAlong(double length, double cellSize, bool periodic, const char* axis) {
   if (!periodic) return std::max(1, static_cast<std::int32_t>(std::min(kMaxCells, std::ceil(length / cellSize))));
@@ -66,17 +58,8 @@ void CellGrid::build(std::span<const double> x, std::span<const double> y, const
   inverse_ = frame.cellExtent().cwiseInverse();
   last_ = {frame.nx - 1.0, frame.ny - 1.0};
   cell_.resize(x.size());
-  order_.resize(x.size());
   findCells(x, y);
-  // Every chunk costs a histogram of all cells, so sparse grids take fewer. The number of chunks follows the machine,
-  // and may: a stable sort has one result.
-  const std::size_t affordable = 4 * x.size() / frame.cellCount();
-  const std::size_t chunks = std::min({static_cast<std::size_t>(concurrency()), kMaxChunks, affordable});
-  if (chunks < 2 || x.size() < kSerialParticles) {
-    sortSerial();
-  } else {
-    sortParallel(chunks);
-  }
+  sort_.sort(cell_.span(), frame.cellCount());
 }
 
 void CellGrid::findCells(std::span<const double> x, std::span<const double> y) {
@@ -94,82 +77,6 @@ void CellGrid::findCells(std::span<const double> x, std::span<const double> y) {
   });
 }
 
-// cellStart_[c + 2] counts the particles of cell c; summed up, cellStart_[c + 1] is where c starts; and when the last
-// particle of c has been placed there, it has become where c + 1 starts.
-void CellGrid::sortSerial() {
-  const std::size_t cells = frame_.cellCount(), n = cell_.size();
-  cellStart_.resize(cells + 2);
-  std::uint32_t* start = cellStart_.data();
-  std::memset(start, 0, (cells + 2) * sizeof(std::uint32_t));
-  const std::uint32_t* cell = cell_.data();
-  std::uint32_t* order = order_.data();
-  std::uint32_t descents = 0, previous = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t c = cell[i];
-    descents += c < previous ? 1u : 0u;
-    previous = c;
-    ++start[c + 2];
-  }
-  sorted_ = descents == 0;
-  std::uint32_t sum = 0;
-  for (std::size_t c = 2; c < cells + 2; ++c) start[c] = sum += start[c];
-  if (sorted_) {
-    for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<std::uint32_t>(i);
-    std::memmove(start, start + 1, (cells + 1) * sizeof(std::uint32_t));
-  } else {
-    for (std::size_t i = 0; i < n; ++i) order[start[cell[i] + 1]++] = static_cast<std::uint32_t>(i);
-  }
-  cellStart_.resize(cells + 1);
-}
-
-void CellGrid::sortParallel(std::size_t chunks) {
-  const std::size_t cells = frame_.cellCount(), n = cell_.size();
-  const std::size_t chunkSize = (n + chunks - 1) / chunks;
-  cellStart_.resize(cells + 1);
-  histograms_.resize(chunks * cells);
-  std::array<std::uint32_t, kMaxChunks> descents{};
-  parallelFor(n, chunkSize, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t* histogram = histograms_.data() + begin / chunkSize * cells;
-    std::memset(histogram, 0, cells * sizeof(std::uint32_t));
-    const std::uint32_t* cell = cell_.data();
-    std::uint32_t down = 0, previous = begin > 0 ? cell[begin - 1] : 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t c = cell[i];
-      down += c < previous ? 1u : 0u;
-      previous = c;
-      ++histogram[c];
-    }
-    descents[begin / chunkSize] = down;
-  });
-  sorted_ = std::all_of(descents.begin(), descents.end(), [](std::uint32_t d) { return d == 0; });
-  blockSums_.resize(blockCount(cells, kCellBlock));
-  parallelFor(cells, kCellBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t sum = 0;
-    for (std::size_t k = 0; k < chunks; ++k) {
-      const std::uint32_t* histogram = histograms_.data() + k * cells;
-      for (std::size_t c = begin; c < end; ++c) sum += histogram[c];
-    }
-    blockSums_[begin / kCellBlock] = sum;
-  });
-  std::uint32_t before = 0;
-  for (std::uint32_t& sum : blockSums_) before += std::exchange(sum, before);
-  parallelFor(cells, kCellBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t next = blockSums_[begin / kCellBlock];
-    for (std::size_t c = begin; c < end; ++c) {
-      cellStart_[c] = next;
-      for (std::size_t k = 0; k < chunks; ++k) next += std::exchange(histograms_[k * cells + c], next);
-    }
-  });
-  cellStart_[cells] = static_cast<std::uint32_t>(n);
-  parallelFor(n, chunkSize, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t* next = histograms_.data() + begin / chunkSize * cells;
-    for (std::size_t i = begin; i < end; ++i) order_[next[cell_[i]]++] = static_cast<std::uint32_t>(i);
-  });
-}
-
-std::size_t CellGrid::memoryBytes() const {
-  return sizeof(std::uint32_t) * (cell_.capacity() + order_.capacity() + cellStart_.capacity() +
-                                  histograms_.capacity() + blockSums_.capacity());
-}
+std::size_t CellGrid::memoryBytes() const { return sizeof(std::uint32_t) * cell_.capacity() + sort_.memoryBytes(); }
 
 }  // namespace froude

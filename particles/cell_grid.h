@@ -8,6 +8,7 @@
 #include <froude/base/api.h>
 #include <froude/base/error.h>
 #include <froude/base/types.h>
+#include <froude/particles/key_sort.h>
 
 namespace froude {
 
@@ -60,13 +61,13 @@ class FROUDE_API CellGrid {
   void build(std::span<const double> x, std::span<const double> y, const GridFrame& frame);
 
   const GridFrame& frame() const { return frame_; }
-  std::size_t size() const { return order_.size(); }
+  std::size_t size() const { return cell_.size(); }
   /// new[i] = old[order()[i]] sorts by cell and keeps the order within a cell.
-  std::span<const std::uint32_t> order() const { return order_.span(); }
+  std::span<const std::uint32_t> order() const { return sort_.order(); }
   /// True if `order()` is 0, 1, 2, …: nothing to permute.
-  bool sorted() const { return sorted_; }
+  bool sorted() const { return sort_.sorted(); }
   /// cellCount() + 1 offsets into the sorted particles.
-  std::span<const std::uint32_t> cellStart() const { return cellStart_.span(); }
+  std::span<const std::uint32_t> cellStart() const { return sort_.start(); }
   /// The cell of each particle, in the order of the input of `build` (not sorted).
   std::span<const std::uint32_t> cells() const { return cell_.span(); }
 
@@ -109,19 +110,16 @@ class FROUDE_API CellGrid {
   }
   CellRun runOf(std::int32_t row, std::int32_t first, std::int32_t last, double shiftX, double shiftY) const {
     const std::size_t base = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame_.nx);
-    return {cellStart_[base + static_cast<std::size_t>(first)], cellStart_[base + static_cast<std::size_t>(last) + 1],
-            shiftX, shiftY};
+    const std::span<const std::uint32_t> start = sort_.start();
+    return {start[base + static_cast<std::size_t>(first)], start[base + static_cast<std::size_t>(last) + 1], shiftX,
+            shiftY};
   }
   void findCells(std::span<const double> x, std::span<const double> y);
-  void sortSerial();
-  void sortParallel(std::size_t chunks);
 
   GridFrame frame_;
   Vec2 inverse_{1.0, 1.0}, last_{0.0, 0.0}, period_{1.0, 1.0};
-  AlignedArray<std::uint32_t> cell_, order_, cellStart_;
-  AlignedArray<std::uint32_t> histograms_;  ///< one per chunk of particles, then the places they write to
-  AlignedArray<std::uint32_t> blockSums_;
-  bool sorted_ = true;
+  AlignedArray<std::uint32_t> cell_;
+  KeySort sort_;
 };
 
 }  // namespace froude

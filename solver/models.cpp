@@ -3,6 +3,7 @@
 
 #include <froude/base/error.h>
 #include <froude/solver/fluid/dfsph.h>
+#include <froude/solver/fluid/grid/apic.h>
 #include <froude/solver/fluid/pbf.h>
 #include <froude/solver/fluid/wcsph.h>
 #include <froude/solver/model_card.h>
@@ -81,6 +82,22 @@ std::span<const ModelCard> modelCards() {
         "P. Sun et al.: The delta-plus-SPH model. Comput. Methods Appl. Mech. Eng. 315, 2017",
         "H. Wendland: Piecewise polynomial, positive definite and compactly supported radial functions. Adv. Comput. "
         "Math. 4, 1995"}},
+      {"apic",
+       "Affine particle-in-cell",
+       "incompressible fluid with a free surface: particles on a grid of two spacings, one global pressure solve a "
+       "step, "
+       "polygons as exact cut cells, free-slip",
+       "viscosity, walls that fluid sticks to, surface tension",
+       {"courant * 2 spacing / v_max, courant = 5 unless set, gravity's share of the speed included",
+        "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
+       {"two sides of a plate thinner than a cell feel each other's velocities",
+        "drops that meet in mid-air press blocks of cells together for a step or two",
+        "what fills less than half of a cell flies without pressure"},
+       {"C. Jiang et al.: The affine particle-in-cell method. ACM Trans. Graph. 34(4), 2015",
+        "C. Batty, F. Bertails, R. Bridson: A fast variational framework for accurate solid-fluid coupling. ACM Trans. "
+        "Graph. 26(3), 2007",
+        "Y. T. Ng, C. Min, F. Gibou: An efficient fluid-solid coupling algorithm for single-phase flows. J. Comput. "
+        "Phys. 228, 2009"}},
       {"rigid",
        "Rigid bodies",
        "free polygons, concave ones too: contacts with Coulomb friction and Newton's restitution, hinges to the world, "
@@ -159,7 +176,8 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
   if (def.model == "pbf") return std::make_unique<Pbf>(def, domain, pool);
   if (def.model == "dfsph") return std::make_unique<Dfsph>(def, domain, pool);
   if (def.model == "wcsph") return std::make_unique<Wcsph>(def, domain, pool);
-  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf, dfsph, wcsph");
+  if (def.model == "apic") return std::make_unique<Apic>(def, domain, pool);
+  throw Error("fluid model '" + def.model + "' is not in this version; this build has: pbf, dfsph, wcsph, apic");
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {

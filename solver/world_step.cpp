@@ -270,12 +270,12 @@ void World::Impl::judge(StepStats& stats, double dt) {
     return;
   }
   if (fluidModel != nullptr) {
-    const double travel = after.maxSpeed * dt / fluidModel->supportRadius();
+    const double travel = after.maxSpeed * dt / fluidModel->farthestTravel();
     if (travel > def.limits.displacement) {
       fail(Trouble::Displacement, travel, def.limits.displacement);
       return;
     }
-    if (stats.maxCompression > def.limits.compression) {
+    if (fluidModel->undoesCompression() && stats.maxCompression > def.limits.compression) {
       fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
       return;
     }

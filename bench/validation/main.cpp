@@ -1,4 +1,5 @@
-// How right is each fluid method, how does that improve with resolution, and what does it cost?
+// How right is each fluid method and each model of soft bodies, how does that improve with resolution, and what does it
+// cost?
 //
 //   validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--limit SECONDS] [--rows FILE] [--list]
 //
@@ -27,7 +28,7 @@ using namespace froude::validation;
 constexpr const char* kUsage =
     "usage: validation [--methods A,B] [--cases A,B] [--quick] [--threads N] [--limit SECONDS] [--rows FILE] "
     "[--list]\n"
-    "  --methods A,B   fluid methods (default: all of this build)\n"
+    "  --methods A,B   fluid methods and models of soft bodies (default: all of this build)\n"
     "  --cases A,B     cases (default: all; --list names them)\n"
     "  --quick         coarser spacings and shorter runs: does everything still work?\n"
     "  --threads N     threads of the steps (default 1)\n"
@@ -99,7 +100,8 @@ void expectKnown(const std::vector<std::string>& asked, const std::vector<std::s
 void list(const std::vector<std::string>& methods) {
   fmt::print("methods: {}\n\n", fmt::join(methods, ", "));
   for (const Case& c : allCases()) {
-    fmt::print("{} (scenes/{}.toml)\n  {}\n  spacings {}; quick {}\n", c.name, c.scene, c.measures,
+    fmt::print("{} (scenes/{}.toml{})\n  {}\n  spacings {}; quick {}\n", c.name, c.scene,
+               c.softModels.empty() ? "" : fmt::format("; {}", fmt::join(c.softModels, ", ")), c.measures,
                fmt::join(c.full.spacings, ", "), fmt::join(c.quick.spacings, ", "));
   }
 }
@@ -128,7 +130,8 @@ Series run(const Case& entry, const std::string& method, const Options& options)
 }
 
 int validate(Options options) {
-  const std::vector<std::string> methods = fluidMethods();
+  std::vector<std::string> methods = fluidMethods();
+  for (const auto& [name, model] : scene::softModelNames()) methods.push_back(name);
   std::vector<std::string> names;
   for (const Case& c : allCases()) names.push_back(c.name);
   expectKnown(options.methods, methods, "method");
@@ -149,7 +152,8 @@ int validate(Options options) {
   fmt::print("{}\n", tableHead());
   for (const Case& entry : allCases()) {
     if (std::find(options.cases.begin(), options.cases.end(), entry.name) == options.cases.end()) continue;
-    for (const std::string& method : options.methods) {
+    for (const std::string& method : methodsOf(entry)) {
+      if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end()) continue;
       const Series series = run(entry, method, options);
       for (const std::string& line : tableLines(series, here)) fmt::print("{}\n", line);
       std::fflush(stdout);

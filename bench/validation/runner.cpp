@@ -48,15 +48,19 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
                 const std::vector<scene::Override>& overrides, double limit) {
   Outcome outcome;
   outcome.spacing = spacing;
-  std::vector<scene::Override> all{{"model.fluid", method}, {"model.spacing", fmt::format("{:.17g}", spacing)}};
-  all.insert(all.end(), overrides.begin(), overrides.end());
+  const bool soft = !entry.softModels.empty();
+  const std::vector<scene::Override> own{{soft ? "soft.0.model" : "model.fluid", method},
+                                         {soft ? "soft.0.spacing" : "model.spacing", fmt::format("{:.17g}", spacing)}};
+  std::vector<scene::Override> all = soft ? overrides : own;
+  all.insert(all.end(), soft ? own.begin() : overrides.begin(), soft ? own.end() : overrides.end());
   try {
     const scene::Scene scene = scene::load(scenePath(entry.scene), all);
     World world = scene::makeWorld(scene);
     if (entry.prepare) entry.prepare(world);
     const std::unique_ptr<Measure> measure = entry.measure(scene);
     const std::string trouble = stepToEnd(world, scene, entry.every, limit, *measure, outcome.wall);
-    outcome.particles = world.fluid() != nullptr ? world.fluid()->size() : 0;
+    for (const ParticlePool* pool : {world.fluid(), world.soft()})
+      if (pool != nullptr) outcome.particles += pool->size();
     outcome.ledger = world.ledger();
     outcome.simulated = world.time();
     if (!trouble.empty()) {
@@ -83,6 +87,10 @@ std::vector<std::string> fluidMethods() {
     }
   }
   return names;
+}
+
+std::vector<std::string> methodsOf(const Case& entry) {
+  return entry.softModels.empty() ? fluidMethods() : entry.softModels;
 }
 
 double order(const std::vector<Outcome>& outcomes, const std::string& metric) {

@@ -28,6 +28,9 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
 /// Names of the fluid methods that this build can make.
 std::vector<std::string> fluidMethods();
 
+/// What a case is run with: the models that it names, or all fluid methods.
+std::vector<std::string> methodsOf(const Case& entry);
+
 /// Order of convergence of the metric with that name: the slope of log |error| over log spacing, by least squares over
 /// the runs that reached their end. Errors within rounding of 0 do not count, nor metrics that do not converge; NaN
 /// with fewer than two.

@@ -1,7 +1,8 @@
 // Validation cases: what one is, and where all of them are found.
 //
 // A case is one file in bench/validation/cases: it names a shipped scene, the spacings to run it at, and what is
-// measured. It knows no fluid method, so a new method runs through all of them without a change.
+// measured. It knows no fluid method, so a new method runs through all of them without a change. A case of soft bodies
+// names the models that it is about.
 #pragma once
 
 #include <functional>
@@ -39,7 +40,7 @@ class Measure {
 /// At which spacings, and with what changed in the scene.
 struct Form {
   std::vector<double> spacings;            // coarse to fine [m]
-  std::vector<scene::Override> overrides;  // besides model.fluid and model.spacing
+  std::vector<scene::Override> overrides;  // besides the method and the spacing
 };
 
 struct Case {
@@ -50,6 +51,8 @@ struct Case {
   Form full, quick;
   std::function<std::unique_ptr<Measure>(const scene::Scene&)> measure;
   std::function<void(World&)> prepare{};  // before t = 0: what a scene cannot say; empty: nothing
+  /// Of a case of soft bodies: models of the first one, whose spacing is the case's. Empty: a case of fluids.
+  std::vector<std::string> softModels{};
 };
 
 /// Of all files in cases/, by name.

@@ -26,6 +26,9 @@ class FreeBodies {
     const BodyMotion& m = bodies_.motion(static_cast<std::size_t>(owner));
     return m.position + dt_ * m.velocity;
   }
+  /// Its motion over the sub-step: of the centre of mass [m/s], and its spin [rad/s].
+  const Vec2& velocity(int owner) const { return bodies_.motion(static_cast<std::size_t>(owner)).velocity; }
+  double spin(int owner) const { return bodies_.motion(static_cast<std::size_t>(owner)).spin; }
   const MassData& mass(int owner) const { return bodies_.mass(static_cast<std::size_t>(owner)); }
   /// From its hinge to its centre of mass at the end of the sub-step; empty if it has none.
   std::optional<Vec2> hingeArm(int owner) const;

@@ -80,6 +80,22 @@ void Obstacles::bake(const std::vector<Baked>& fixed) {
   ++fixedVersion_;
 }
 
+void Obstacles::outlines(bool moving, const CollisionFilter& filter, std::vector<CutOutline>& outlines) const {
+  if (moving) {
+    for (const Moving& m : moving_) {
+      if (filter.accepts(m.group, m.collidesWith)) {
+        outlines.push_back({m.shape.get(), m.motion.start, m.motion.start.position, m.body});
+      }
+    }
+    return;
+  }
+  for (const Baked& b : baked_) {
+    if (filter.accepts(b.group, b.collidesWith)) {
+      outlines.push_back({b.shape.get(), Transform::of(b.position, b.angle), b.position, b.body});
+    }
+  }
+}
+
 void Obstacles::beginStep(const BodySet& bodies, double dt, double reach) {
   if (moving_.empty()) return;
   dt_ = dt;

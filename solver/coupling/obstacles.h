@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <froude/base/aligned.h>
+#include <froude/fields/cut_cells.h>
 #include <froude/fields/distance_field.h>
 #include <froude/fields/world_field.h>
 #include <froude/solver/fluid/wall_integral.h>
@@ -129,6 +130,9 @@ class Obstacles {
     return {coarseBodies_.data() + coarseStart_[c], coarseStart_[c + 1] - coarseStart_[c]};
   }
   double reach() const { return reach_; }
+  /// Adds to `outlines` the fixed bodies that the filter accepts, or (`moving`) the moving ones as they stand at the
+  /// start of the sub-step. Moments are about the body's origin, that of a free body about its centre of mass.
+  void outlines(bool moving, const CollisionFilter& filter, std::vector<CutOutline>& outlines) const;
   /// Never above the distance of x to fixed obstacles that the filter accepts, images across periodic sides left out;
   /// not positive inside [m].
   double fixedBound(const Vec2& x, const CollisionFilter& filter) const { return fixed_->sample(x, filter).distance; }

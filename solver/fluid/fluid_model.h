@@ -28,6 +28,11 @@ class FluidModel {
 
   /// Reach of a particle [m].
   virtual double supportRadius() const = 0;
+  /// How far a particle may go in a sub-step before it counts as unstable [m].
+  virtual double farthestTravel() const { return supportRadius(); }
+  /// Is a sub-step to be undone that leaves the fluid compressed beyond the limit? Not where the next one takes it
+  /// back.
+  virtual bool undoesCompression() const { return true; }
   /// Mass of a particle [kg/m].
   virtual double particleMass() const = 0;
   /// What its column "pressure" is times to be p/ρ: the share of a pressure gradient that its particles feel.

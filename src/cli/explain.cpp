@@ -142,7 +142,28 @@ void sortBodies(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& o
   }
   if (scripted > 0) in.push_back({plural(scripted, "scripted polygon", "scripted polygons"), "their motion is given"});
   sortFreeBodies(def, in, out);
-  out.push_back({"soft bodies", "the scene has none"});
+}
+
+void sortSoft(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out) {
+  if (def.soft.empty()) out.push_back({"soft bodies", "the scene has none"});
+  for (const auto& [name, model] : scene::softModelNames()) {
+    std::size_t bodies = 0, points = 0, triangles = 0;
+    double least = kInfinity, largest = 0.0;
+    for (const SoftDef& soft : def.soft) {
+      if (soft.model != model) continue;
+      ++bodies;
+      points += soft.mesh->points.size();
+      triangles += soft.mesh->triangles.size();
+      least = std::min(least, soft.spacing);
+      largest = std::max(largest, soft.spacing);
+    }
+    if (bodies == 0) continue;
+    const std::string spacing = least < largest ? fmt::format("{} to {}", least, largest) : fmt::format("{}", least);
+    const std::string cells = triangles > 0 ? ", " + plural(triangles, "triangle", "triangles") : "";
+    in.push_back({fmt::format("{} by `{}`: {}{}, spacing {} m", plural(bodies, "soft body", "soft bodies"), name,
+                              plural(points, "point", "points"), cells, spacing),
+                  "`soft` names them and `model` how they resist", findModelCard(name)});
+  }
 }
 
 void sortRest(const WorldDef& def, std::vector<Item>& in, std::vector<Item>& out) {
@@ -268,6 +289,7 @@ int explainCommand(const std::string& file, bool json) {
   sortFluid(scene, in, out);
   sortBullets(scene, in, out);
   sortBodies(scene.world, in, out);
+  sortSoft(scene.world, in, out);
   sortRest(scene.world, in, out);
   const Prediction prediction = predict(scene);
   (json ? printJson : printText)(scene, in, out, prediction);

@@ -19,6 +19,7 @@ constexpr std::array<std::array<double, 3>, 11> kViridis = {{{68, 1, 84},
                                                              {253, 231, 37}}};
 
 using Stops = std::array<std::array<double, 3>, 3>;
+constexpr Stops kRoses = {{{250, 228, 228}, {222, 96, 130}, {84, 14, 74}}};
 constexpr Stops kBlues = {{{207, 226, 243}, {88, 152, 204}, {14, 55, 112}}};
 constexpr Stops kOranges = {{{253, 232, 205}, {236, 150, 66}, {122, 55, 10}}};
 
@@ -69,9 +70,10 @@ Color viridis(double t) {
   return {mix(0), mix(1), mix(2)};
 }
 
-Color diverging(double t) {
-  const Stops& stops = t < 0.0 ? kBlues : kOranges;
-  const double place = 2.0 * std::min(std::abs(t), 1.0);
+namespace {
+
+Color between(const Stops& stops, double t) {
+  const double place = 2.0 * (t > 0.0 ? std::min(t, 1.0) : 0.0);
   const std::size_t k = place < 1.0 ? 0 : 1;
   const double w = place - static_cast<double>(k);
   const auto mix = [&](std::size_t c) {
@@ -79,6 +81,12 @@ Color diverging(double t) {
   };
   return {mix(0), mix(1), mix(2)};
 }
+
+}  // namespace
+
+Color diverging(double t) { return between(t < 0.0 ? kBlues : kOranges, std::abs(t)); }
+
+Color strainColor(double t) { return between(kRoses, t); }
 
 double roundUp(double value) {
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
@@ -138,8 +146,45 @@ ColorScale colorScale(const scene::Scene& scene) {
     scale.factor = 1e3;
     unit = "mm/s";
   }
-  const char* names[] = {"speed", "pressure", "density"};
+  const char* names[] = {"speed", "pressure", "density", "strain"};
   scale.label = std::string(names[static_cast<int>(scale.quantity)]) + " (" + unit + ")";
+  return scale;
+}
+
+namespace {
+
+/// A beam that is held bends by 3 ρ g L²/(E t), any other body gives way by ρ g h/E under its weight and by v √(ρ/E)
+/// when it is stopped.
+double expectedStrain(const SoftDef& def, double gravity, const Box& domain) {
+  Box box;
+  const Transform transform = Transform::of(def.position, def.angle);
+  for (const Vec2& p : def.mesh->points) box.include(transform.toWorld(p));
+  const Vec2 size = box.size();
+  const double weight = def.density * gravity / def.young;  // [1/m]
+  if (!def.pinned.empty()) {
+    const double thin = def.model == SoftModel::Rope ? def.thickness : size.minCoeff();
+    return def.model == SoftModel::Rope ? weight * size.maxCoeff() : 3.0 * weight * size.squaredNorm() / thin;
+  }
+  const double fall =
+      std::sqrt(def.velocity.squaredNorm() + 2.0 * gravity * std::max(0.0, box.min.y() - domain.min.y()));
+  return weight * size.maxCoeff() + fall * std::sqrt(def.density / def.young);
+}
+
+}  // namespace
+
+ColorScale strainScale(const scene::Scene& scene) {
+  ColorScale scale;
+  scale.quantity = ColorScale::Quantity::Strain;
+  scale.factor = 100.0;
+  scale.label = "strain (%)";
+  double largest = 0.0;
+  for (const SoftDef& def : scene.world.soft)
+    largest = std::max(largest, expectedStrain(def, gravityScale(scene), scene.world.domain.box));
+  scale.high = largest > 0.0 && std::isfinite(largest) ? std::min(roundUp(0.9 * largest), 1.0) : 0.1;
+  if (scene.output.image.strainRange) {
+    scale.low = (*scene.output.image.strainRange)[0];
+    scale.high = (*scene.output.image.strainRange)[1];
+  }
   return scale;
 }
 

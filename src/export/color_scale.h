@@ -22,6 +22,9 @@ Color viridis(double t);
 /// the sign is seen everywhere. Blue and orange are told apart by people with every common colour blindness.
 Color diverging(double t);
 
+/// For strain, t in [0, 1], clamped: pale rose to dark plum, apart from viridis and from the colours of polygons.
+Color strainColor(double t);
+
 /// Smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 · 10^k that is at least `value` > 0.
 double roundUp(double value);
 /// Largest of 1, 2, 5 · 10^k that is at most `value` > 0.
@@ -31,9 +34,9 @@ std::vector<double> niceTicks(double low, double high, int wanted);
 
 /// What particles are coloured by, and which values the two ends of the colour bar stand for.
 struct ColorScale {
-  enum class Quantity { Speed, Pressure, Density };
+  enum class Quantity { Speed, Pressure, Density, Strain };
   Quantity quantity = Quantity::Speed;
-  double low = 0.0, high = 1.0;  // [m/s, N/m, kg/m²]
+  double low = 0.0, high = 1.0;  // [m/s, N/m, kg/m², 1]
   double factor = 1.0;           // from SI to the labels' unit
   std::string label;             // "speed (m/s)"
 
@@ -44,5 +47,9 @@ struct ColorScale {
 /// pressure 0 … ρgH; density ±10 %; H is the height of the fluid's top at the start above the domain's lower side. It
 /// depends on the scene alone, so a resumed run keeps its colours.
 ColorScale colorScale(const scene::Scene& scene);
+
+/// Of soft bodies: from 0 to the largest strain that their weight, their fall and their speed at the start ask for, 100
+/// % at most, or the scene's own range.
+ColorScale strainScale(const scene::Scene& scene);
 
 }  // namespace froude::exporting

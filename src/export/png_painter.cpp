@@ -20,11 +20,11 @@ namespace {
 // The layout, in units of 1/1280 of the width.
 constexpr double kMargin = 28.0, kHeader = 60.0, kFooter = 84.0;
 constexpr double kWall = 4.0, kOutline = 1.5;
-constexpr double kTallest = 1.4;       // view, against the picture's width
-constexpr double kSmallestUnit = 0.6;  // letters stay legible in small pictures
-constexpr double kBar = 340.0;
-constexpr double kSmallestBullet = 1.25;  // radius
-constexpr double kSmallestDrop = 3.5;     // radius of a fluid's particle that is seen by itself [pixels]
+constexpr double kTallest = 1.4;                   // view, against the picture's width
+constexpr double kSmallestUnit = 0.6;              // letters stay legible in small pictures
+constexpr double kBar = 340.0, kShortBar = 220.0;  // two bars stand side by side
+constexpr double kSmallestBullet = 1.25;           // radius
+constexpr double kSmallestDrop = 3.5;              // radius of a fluid's particle that is seen by itself [pixels]
 constexpr double kDark = 0.16, kGrey = 0.45, kBody = 0.78;
 constexpr Color kScripted{184, 202, 222}, kFree{240, 204, 158}, kAsleep{249, 233, 212};
 constexpr double kSmallestMarked = 8.0;  // radius of a free body whose turning is still seen [pixels]
@@ -53,7 +53,11 @@ std::array<Vec2, 2> markOf(const Polygon& shape) {
 }  // namespace
 
 PngPainter::PngPainter(const scene::Scene& scene)
-    : domain_(scene.world.domain), title_(scene.title), scale_(colorScale(scene)), width_(scene.output.image.width) {
+    : domain_(scene.world.domain),
+      title_(scene.title),
+      scale_(colorScale(scene)),
+      strainScale_(strainScale(scene)),
+      width_(scene.output.image.width) {
   view_ = scene.output.image.view;
   if (view_.empty() || !(view_.size().minCoeff() > 0.0)) view_ = domain_.box;
   if (title_.empty()) title_ = scene.name;
@@ -66,6 +70,7 @@ PngPainter::PngPainter(const scene::Scene& scene)
     bulletRadius_ = scene.world.bullet->radius;
   }
   particles_ = scene.world.fluid || scene.world.bullet;
+  soft_ = !scene.world.soft.empty();
   // One digit more than the frames need: they are taken at step ends, a little after their times.
   timeDigits_ = std::clamp(static_cast<int>(std::ceil(-std::log10(scene.output.every))) + 1, 1, 9);
 
@@ -90,11 +95,12 @@ void PngPainter::draw(const std::string& file, const World& world) const {
   if (unsigned char* data = cairo_image_surface_get_data(surface.get()))
     drawParticles(world, data, cairo_image_surface_get_stride(surface.get()));
   cairo_surface_mark_dirty(surface.get());
+  drawSoft(cr, world);
   drawBodies(cr, world);
   drawSides(cr);
   drawHeader(cr, world.time());
   drawScale(cr);
-  if (particles_) drawColorBar(cr);
+  drawColorBars(cr);
 
   run::writeWholeFile(file, pngBytes(cr, surface.get(), file));
 }
@@ -236,12 +242,20 @@ void PngPainter::drawScale(cairo_t* cr) const {
   drawScaleBar(cr, {metres, std::max(left_, kMargin * unit_), bottom_ + 34.0 * unit_, pixels_, unit_});
 }
 
-void PngPainter::drawColorBar(cairo_t* cr) const {
-  const double length = std::min(kBar * unit_, 0.4 * width_), tall = 14.0 * unit_;
-  const double end = width_ - kMargin * unit_ - 8.0 * unit_, x = end - length, y = bottom_ + 26.0 * unit_;
+namespace {
+
+/// Where a colour bar stands.
+struct Bar {
+  double x, y, length, tall, unit;  // its left upper corner and size; pixels per unit of the layout
+};
+
+/// Returns how far its label reaches to the left.
+double drawColorBar(cairo_t* cr, const ColorScale& scale, Color (*color)(double), const Bar& bar) {
+  const auto [x, y, length, tall, unit] = bar;
+  const double end = x + length;
   cairo_pattern_t* gradient = cairo_pattern_create_linear(x, 0, end, 0);
   for (int k = 0; k <= 20; ++k) {
-    const Color c = viridis(k / 20.0);
+    const Color c = color(k / 20.0);
     cairo_pattern_add_color_stop_rgb(gradient, k / 20.0, c.r / 255.0, c.g / 255.0, c.b / 255.0);
   }
   cairo_rectangle(cr, x, y, length, tall);
@@ -249,17 +263,30 @@ void PngPainter::drawColorBar(cairo_t* cr) const {
   cairo_fill_preserve(cr);
   cairo_pattern_destroy(gradient);
   setGrey(cr, kDark);
-  cairo_set_line_width(cr, 1.0 * unit_);
+  cairo_set_line_width(cr, 1.0 * unit);
   cairo_stroke(cr);
-  cairo_set_font_size(cr, 16.0 * unit_);
-  drawText(cr, scale_.label, x - 16.0 * unit_, y + tall, 1.0);
-  for (const double tick : niceTicks(scale_.low * scale_.factor, scale_.high * scale_.factor, 5)) {
-    const double at = x + length * scale_.position(tick / scale_.factor);
+  cairo_set_font_size(cr, 16.0 * unit);
+  drawText(cr, scale.label, x - 16.0 * unit, y + tall, 1.0);
+  for (const double tick : niceTicks(scale.low * scale.factor, scale.high * scale.factor, 5)) {
+    const double at = x + length * scale.position(tick / scale.factor);
     cairo_move_to(cr, at, y + tall);
-    cairo_line_to(cr, at, y + tall + 5.0 * unit_);
+    cairo_line_to(cr, at, y + tall + 5.0 * unit);
     cairo_stroke(cr);
-    drawText(cr, fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0.0 : tick), at, y + tall + 23.0 * unit_, 0.5);
+    drawText(cr, fmt::format("{:g}", std::abs(tick) < 1e-12 ? 0.0 : tick), at, y + tall + 23.0 * unit, 0.5);
   }
+  return x - 16.0 * unit - textWidth(cr, scale.label);
+}
+
+}  // namespace
+
+/// Particles on the right; soft bodies left of it, or there where there are no particles.
+void PngPainter::drawColorBars(cairo_t* cr) const {
+  const bool both = particles_ && soft_;
+  const double length = std::min((both ? kShortBar : kBar) * unit_, 0.4 * width_);
+  const double end = width_ - kMargin * unit_ - 8.0 * unit_;
+  Bar bar{end - length, bottom_ + 26.0 * unit_, length, 14.0 * unit_, unit_};
+  if (particles_) bar.x = drawColorBar(cr, scale_, viridis, bar) - 24.0 * unit_ - length;
+  if (soft_) drawColorBar(cr, strainScale_, strainColor, bar);
 }
 
 void drawPng(const std::string& file, const World& world, const scene::Scene& scene) {

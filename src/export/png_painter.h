@@ -28,20 +28,21 @@ class PngPainter {
     return {left_ + (p.x() - view_.min.x()) * pixels_, bottom_ - (p.y() - view_.min.y()) * pixels_};
   }
   void drawParticles(const World& world, std::uint8_t* data, int stride) const;
+  void drawSoft(_cairo* cr, const World& world) const;  // png_soft.cpp
   void drawBodies(_cairo* cr, const World& world) const;
   void drawMark(_cairo* cr, const BodyDef& body, const Transform& transform) const;
   void drawSides(_cairo* cr) const;
   void drawHeader(_cairo* cr, double time) const;
   void drawScale(_cairo* cr) const;
-  void drawColorBar(_cairo* cr) const;
+  void drawColorBars(_cairo* cr) const;
 
   DomainDef domain_;
   std::string title_;
-  ColorScale scale_;
+  ColorScale scale_, strainScale_;
   Box view_;                                              // [m]
   double restDensity_ = 1000.0, bulletDensity_ = 1000.0;  // [kg/m²]
   double fluidRadius_ = 0.0, bulletRadius_ = 0.0;         // [m]
-  bool particles_ = false;                                // else there is nothing to colour
+  bool particles_ = false, soft_ = false;                 // else there is nothing to colour
   int timeDigits_ = 3;
   int width_ = 0, height_ = 0;
   double unit_ = 1.0;                                           // pixels per unit of the layout: 1 at a width of 1280

@@ -7,6 +7,7 @@
 
 #include <froude/base/parallel.h>
 #include "export/frames.h"
+#include "export/soft_surface.h"
 #include "run/atomic_file.h"
 
 namespace froude::exporting {
@@ -57,7 +58,30 @@ struct Columns {
       }
     });
   }
+
+  void fillSoft(const World& world, std::size_t first) {
+    fill(*world.soft(), first, 2, 0.0);
+    for (std::size_t body = 0; body < world.softCount(); ++body) {
+      const SoftDef& def = world.softDefinition(body);
+      const auto begin = density.begin() + static_cast<std::ptrdiff_t>(first + world.softFirst(body));
+      std::fill_n(begin, def.mesh->points.size(), static_cast<float>(def.density));
+    }
+  }
 };
+
+/// Numbers of the surface are moved on to those of the frame's particles.
+void writeSurface(hid_t group, SoftSurface& surface, std::uint32_t first) {
+  for (auto& triangle : surface.triangles)
+    for (std::uint32_t& corner : triangle) corner += first;
+  for (auto& link : surface.links)
+    for (std::uint32_t& end : link) end += first;
+  const hid_t u32 = H5T_NATIVE_UINT32, u32le = H5T_STD_U32LE, f32 = H5T_NATIVE_FLOAT, f32le = H5T_IEEE_F32LE;
+  const hsize_t t = surface.triangles.size(), l = surface.links.size();
+  writeColumn(group, {"triangles", "", u32, u32le, {t, 3}, surface.triangles.data()});
+  writeColumn(group, {"strain", "", f32, f32le, {t, 1}, surface.strain.data()});
+  writeColumn(group, {"links", "", u32, u32le, {l, 2}, surface.links.data()});
+  writeColumn(group, {"link_strain", "", f32, f32le, {l, 1}, surface.linkStrain.data()});
+}
 
 std::vector<double> bodyRows(const World& world) {
   std::vector<double> rows;
@@ -77,6 +101,16 @@ T readAttribute(hid_t object, const char* name, hid_t type) {
   return value;
 }
 
+/// Rows of a dataset; 0 where there is none.
+std::size_t rowsOf(hid_t group, const char* name, const std::string& path) {
+  if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return 0;
+  const Hdf5Handle data(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose, path);
+  const Hdf5Handle space(H5Dget_space(data), H5Sclose, path);
+  hsize_t shape[2] = {0, 0};
+  H5Sget_simple_extent_dims(space, shape, nullptr);
+  return static_cast<std::size_t>(shape[0]);
+}
+
 }  // namespace
 
 std::string frameName(int index) { return fmt::format("frame_{:05}", index); }
@@ -86,6 +120,7 @@ int positionBytes(const WorldDef& def) {
   double length = kInfinity;
   if (def.fluid) length = std::min(length, def.fluid->spacing);
   if (def.bullet) length = std::min(length, def.bullet->radius);
+  for (const SoftDef& soft : def.soft) length = std::min(length, soft.spacing);
   const double farthest = std::max(def.domain.box.min.cwiseAbs().maxCoeff(), def.domain.box.max.cwiseAbs().maxCoeff());
   return farthest * std::ldexp(1.0, -24) > kPositionError * length ? 8 : 4;
 }
@@ -95,13 +130,17 @@ Segment::Segment(int number) : number_(number), file_("memory:" + segmentFile(nu
 void Segment::add(const World& world, int index) {
   const ParticlePool *fluid = world.fluid(), *bullets = world.bullets();
   const std::size_t fluidCount = fluid != nullptr ? fluid->size() : 0;
-  const std::size_t count = fluidCount + (bullets != nullptr ? bullets->size() : 0);
+  const std::size_t bulletCount = bullets != nullptr ? bullets->size() : 0, rigidCount = fluidCount + bulletCount;
+  const std::size_t count = rigidCount + (world.soft() != nullptr ? world.soft()->size() : 0);
   const WorldDef& def = world.definition();
-  const FrameEntry entry{index, number_, world.time(), count, positionBytes(def)};
+  SoftSurface surface = softSurface(world);
+  const FrameEntry entry{
+      index, number_, world.time(), count, surface.triangles.size(), surface.links.size(), positionBytes(def)};
   const bool wide = entry.positionBytes == 8;
   Columns c(count, wide);
   if (fluidCount > 0) c.fill(*fluid, 0, 0, def.fluid->density);
-  if (count > fluidCount) c.fill(*bullets, fluidCount, 1, def.bullet->density);
+  if (bulletCount > 0) c.fill(*bullets, fluidCount, 1, def.bullet->density);
+  if (count > rigidCount) c.fillSoft(world, rigidCount);
   const std::vector<double> bodies = bodyRows(world);
 
   const std::string name = frameName(index);
@@ -119,6 +158,7 @@ void Segment::add(const World& world, int index) {
   writeColumn(group, {"density", "kg/m²", f32, f32le, {n, 1}, c.density.data()});
   writeColumn(group, {"species", "", H5T_NATIVE_UINT8, H5T_STD_U8LE, {n, 1}, c.species.data()});
   writeColumn(group, {"id", "", H5T_NATIVE_UINT32, H5T_STD_U32LE, {n, 1}, c.id.data()});
+  if (world.softCount() > 0) writeSurface(group, surface, static_cast<std::uint32_t>(rigidCount));
   writeColumn(group, {"bodies", "m, m, rad, m/s, m/s, rad/s", f64, f64le, {world.bodyCount(), 6}, bodies.data()});
   frames_.push_back(entry);
 }
@@ -151,6 +191,7 @@ std::vector<FrameEntry> readSegment(const std::string& folder, int segment) {
     H5Sget_simple_extent_dims(space, shape, nullptr);
     frames.push_back({readAttribute<int>(group, "index", H5T_NATIVE_INT), segment,
                       readAttribute<double>(group, "time", H5T_NATIVE_DOUBLE), static_cast<std::size_t>(shape[0]),
+                      rowsOf(group, "triangles", path), rowsOf(group, "links", path),
                       static_cast<int>(H5Tget_size(type))});
   }
   std::sort(frames.begin(), frames.end(), [](const FrameEntry& a, const FrameEntry& b) { return a.index < b.index; });
@@ -169,16 +210,46 @@ std::string xdmfAttribute(const FrameEntry& f, const char* name, const char* kin
       segmentFile(f.segment), frameName(f.index));
 }
 
-std::string xdmfGrid(const FrameEntry& f) {
-  std::string grid = fmt::format(
+std::string xdmfBegin(const FrameEntry& f, const std::string& topology) {
+  return fmt::format(
       "      <Grid Name=\"{0}\" GridType=\"Uniform\">\n"
       "        <Time Value=\"{1:.17g}\"/>\n"
-      "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{2}\" NodesPerElement=\"1\"/>\n"
+      "{5}"
       "        <Geometry GeometryType=\"XY\">\n"
       "          <DataItem Dimensions=\"{2} 2\" NumberType=\"Float\" Precision=\"{3}\" "
       "Format=\"HDF\">{4}:/{0}/position</DataItem>\n"
       "        </Geometry>\n",
-      frameName(f.index), f.time, f.particles, f.positionBytes, segmentFile(f.segment));
+      frameName(f.index), f.time, f.particles, f.positionBytes, segmentFile(f.segment), topology);
+}
+
+/// Cells of soft bodies, and a number for each.
+struct XdmfCells {
+  const char *topology, *set, *value;
+  int corners;
+  std::size_t count;
+};
+
+std::string xdmfCells(const FrameEntry& f, const XdmfCells& cells) {
+  const std::string file = segmentFile(f.segment) + ":/" + frameName(f.index) + "/";
+  return xdmfBegin(f, fmt::format("        <Topology TopologyType=\"{0}\" NumberOfElements=\"{1}\" "
+                                  "NodesPerElement=\"{2}\">\n"
+                                  "          <DataItem Dimensions=\"{1} {2}\" NumberType=\"UInt\" Precision=\"4\" "
+                                  "Format=\"HDF\">{3}{4}</DataItem>\n"
+                                  "        </Topology>\n",
+                                  cells.topology, cells.count, cells.corners, file, cells.set)) +
+         fmt::format(
+             "        <Attribute Name=\"strain\" AttributeType=\"Scalar\" Center=\"Cell\">\n"
+             "          <DataItem Dimensions=\"{0}\" NumberType=\"Float\" Precision=\"4\" "
+             "Format=\"HDF\">{1}{2}</DataItem>\n"
+             "        </Attribute>\n"
+             "      </Grid>\n",
+             cells.count, file, cells.value);
+}
+
+std::string xdmfGrid(const FrameEntry& f) {
+  std::string grid = xdmfBegin(
+      f, fmt::format("        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
+                     f.particles));
   grid += xdmfAttribute(f, "velocity", "Vector", "Float", 4);
   grid += xdmfAttribute(f, "pressure", "Scalar", "Float", 4);
   grid += xdmfAttribute(f, "density", "Scalar", "Float", 4);
@@ -187,22 +258,32 @@ std::string xdmfGrid(const FrameEntry& f) {
   return grid + "      </Grid>\n";
 }
 
+std::string xdmfCollection(const char* name, const std::string& grids) {
+  if (grids.empty()) return grids;
+  return fmt::format("    <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", name) + grids +
+         "    </Grid>\n";
+}
+
 }  // namespace
 
 void writeIndex(const std::string& folder, const std::vector<FrameEntry>& frames) {
   Hdf5Memory links("memory:frames.h5", kIndexGrowth);
-  std::string xdmf =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<Xdmf Version=\"2.0\">\n"
-      "  <Domain>\n"
-      "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  std::string particles, soft, ropes;
   for (const FrameEntry& f : frames) {
     const std::string name = frameName(f.index), path = "/" + name, segment = segmentFile(f.segment);
     checkHdf5(H5Lcreate_external(segment.c_str(), path.c_str(), links.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
               folder + "/frames.h5");
-    if (f.particles > 0) xdmf += xdmfGrid(f);
+    if (f.particles > 0) particles += xdmfGrid(f);
+    if (f.triangles > 0) soft += xdmfCells(f, {"Triangle", "triangles", "strain", 3, f.triangles});
+    if (f.links > 0) ropes += xdmfCells(f, {"Polyline", "links", "link_strain", 2, f.links});
   }
-  xdmf += "    </Grid>\n  </Domain>\n</Xdmf>\n";
+  const std::string xdmf =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<Xdmf Version=\"2.0\">\n"
+      "  <Domain>\n"
+      "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+      particles + "    </Grid>\n" + xdmfCollection("soft", soft) + xdmfCollection("ropes", ropes) +
+      "  </Domain>\n</Xdmf>\n";
   links.save(folder + "/frames.h5");
   run::writeWholeFile(folder + "/frames.xdmf", xdmf);
 }

@@ -16,7 +16,8 @@ struct FrameEntry {
   int index = 0, segment = 0;
   double time = 0.0;  // [s]
   std::size_t particles = 0;
-  int positionBytes = 4;  // of one coordinate
+  std::size_t triangles = 0, links = 0;  // of soft bodies
+  int positionBytes = 4;                 // of one coordinate
 };
 
 /// "frame_00012", the name of a frame's group and picture; "frames/0003.h5", a segment's file in the run's folder.
@@ -29,10 +30,14 @@ int positionBytes(const WorldDef& def);
 
 /// A segment being filled. Each frame is a group with the attributes `index` and `time` [s] and
 ///   position [N, 2] (m), velocity [N, 2] (m/s), pressure [N] (N/m), density [N] (kg/m²),
-///   species [N] (0 fluid, 1 bullet), id [N] (number of creation within its species, modulo 2^32),
-///   bodies [B, 6] (x, y, angle in radians, vx, vy, spin), in the order of the scene.
-/// Fluid comes first. Particles are in cell order, which changes between frames; `id` stays. Bullets have pressure 0
-/// and the density of their material. Cost: 29 bytes a particle (37 with 8-byte positions) and about 8 kB a frame.
+///   species [N] (0 fluid, 1 bullet, 2 soft), id [N] (number of creation within its species, modulo 2^32),
+///   bodies [B, 6] (x, y, angle in radians, vx, vy, spin), in the order of the scene;
+/// with soft bodies also
+///   triangles [T, 3] and links [L, 2] of ropes (numbers of particles), strain [T] and link_strain [L] (largest
+///   |stretch − 1|).
+/// Fluid comes first, then bullets, then the points of soft bodies, body by body. Fluid and bullets are in cell order,
+/// which changes between frames; `id` stays. Bullets and soft points have pressure 0 and the density of their
+/// material. Cost: 29 bytes a particle (37 with 8-byte positions) and about 8 kB a frame.
 class Segment {
  public:
   explicit Segment(int number);
@@ -53,8 +58,9 @@ class Segment {
 /// Frames of a closed segment, by index. Throws OutputError for a file that is not one.
 std::vector<FrameEntry> readSegment(const std::string& folder, int segment);
 
-/// Rewrites frames.h5 (an external link for each frame) and frames.xdmf (a temporal collection of Polyvertex grids;
-/// frames without particles are left out, readers stumble over empty ones), each whole. Throws OutputError.
+/// Rewrites frames.h5 (an external link for each frame) and frames.xdmf (a temporal collection of Polyvertex grids,
+/// and where there are soft bodies collections of their triangles and of ropes' links; frames without particles are
+/// left out, readers stumble over empty ones), each whole. Throws OutputError.
 void writeIndex(const std::string& folder, const std::vector<FrameEntry>& frames);
 
 }  // namespace froude::exporting

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include <froude/base/parallel.h>
+#include "scene/material_point.h"
 
 namespace froude::run {
 namespace {
@@ -71,8 +72,18 @@ void energy(const GaugeDef& def, const World& world, std::span<double> out) {
   const Totals t = world.totals(def.species);
   out[0] = t.kinetic;
   out[1] = t.potential;
-  out[2] = 0.0;  // strain: nothing elastic yet
-  out[3] = t.kinetic + t.potential;
+  out[2] = t.strain;
+  out[3] = t.kinetic + t.potential + t.strain;
+}
+
+/// How far a material point has come from where it was put.
+Vec2 tip(const GaugeDef& def, std::size_t soft, const World& world) {
+  const SoftDef& body = world.softDefinition(soft);
+  const scene::MaterialPoint point(*body.mesh, def.at);
+  const std::size_t first = world.softFirst(soft);
+  const auto x = world.soft()->x(), y = world.soft()->y();
+  const Vec2 start = Transform::of(body.position, body.angle).toWorld(point.nearest);
+  return point.at([&](std::uint32_t i) { return Vec2(x[first + i], y[first + i]); }) - start;
 }
 
 const std::vector<Type>& types() {
@@ -105,6 +116,8 @@ const std::vector<Type>& types() {
          put(o, in.world().body(body).transform.position);
          o[2] = in.world().body(body).angle * (180.0 / kPi);
        }},
+      {"tip", {{"x", "m"}, {"y", "m"}}, [](auto& d, auto soft, auto& in, Out o) { put(o, tip(d, soft, in.world())); }},
+      {"area", {{"", "m²"}}, [](auto&, auto soft, auto& in, Out o) { o[0] = in.world().softState(soft).area; }},
       {"energy",
        {{"kinetic", "J"}, {"potential", "J"}, {"strain", "J"}, {"total", "J"}},
        [](auto& d, auto, auto& in, Out o) { energy(d, in.world(), o); }},

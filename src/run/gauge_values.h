@@ -30,7 +30,7 @@ class GaugeInput {
   std::optional<FluidSurface> surface_;
 };
 
-/// Writes the gauge's values at this state. `body`: index of the body it names, where it names one.
+/// Writes the gauge's values at this state. `body`: index of the body or soft body it names, where it names one.
 void readGauge(const scene::GaugeDef& def, std::size_t body, GaugeInput& input, std::span<double> values);
 
 /// The q-quantile of the values [0 ≤ q ≤ 1], linear between the order statistics ⌊(n−1)q⌋ and the next one (Hyndman and

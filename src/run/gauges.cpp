@@ -23,6 +23,12 @@ double interpolate(double a, double b, double weight) {
   return a + (b - a) * weight;
 }
 
+std::size_t softIndex(const scene::GaugeDef& def, const World& world) {
+  for (std::size_t i = 0; i < world.softCount(); ++i)
+    if (world.softDefinition(i).name == def.soft) return i;
+  throw Error(fmt::format("gauge {}: no soft body \"{}\"", def.name, def.soft));
+}
+
 }  // namespace
 
 /// A definition and the readings that are still needed.
@@ -99,6 +105,7 @@ GaugeSet::GaugeSet(const std::vector<scene::GaugeDef>& gauges, const World& worl
     Gauge gauge;
     gauge.def = def;
     if (def.type == "force" || def.type == "pose") gauge.body = world.bodyIndex(def.body);
+    if (def.type == "tip" || def.type == "area") gauge.body = softIndex(def, world);
     const std::vector<GaugeColumn> columns = gaugeColumns(def);
     gauge.firstColumn = columns_.size();
     gauge.width = columns.size();

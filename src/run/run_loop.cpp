@@ -75,8 +75,10 @@ void RunLoop::checkpoint() {
   }
   if (leakLog_) leakLog_->sync();
   countWallTime();
-  saveCheckpoint(folder_.file("checkpoint.h5"), world_, gauges_, record_);
+  const Clock::time_point begin = Clock::now();
+  record_.checkpointBytes = saveCheckpoint(folder_.path(), world_, gauges_, record_);
   lastCheckpoint_ = Clock::now();
+  record_.checkpointSeconds = std::chrono::duration<double>(lastCheckpoint_ - begin).count();
 }
 
 LoopResult RunLoop::finish(LoopResult result) {
@@ -140,7 +142,8 @@ void RunLoop::countWallTime() {
 
 std::size_t RunLoop::liveParticles() const {
   return (world_.fluid() != nullptr ? world_.fluid()->size() : 0) +
-         (world_.bullets() != nullptr ? world_.bullets()->size() : 0);
+         (world_.bullets() != nullptr ? world_.bullets()->size() : 0) +
+         (world_.soft() != nullptr ? world_.soft()->size() : 0);
 }
 
 }  // namespace froude::run

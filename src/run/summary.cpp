@@ -24,15 +24,21 @@ Json number(double value) {
 }
 
 std::string modelName(const WorldDef& def) {
-  if (def.fluid && def.bullet) return def.fluid->model + " + ballistic";
-  if (def.fluid) return def.fluid->model;
-  return def.bullet ? "ballistic" : "none";
+  std::string all = def.fluid ? def.fluid->model : "";
+  const auto add = [&](std::string_view model) { all += (all.empty() ? "" : " + ") + std::string(model); };
+  if (def.bullet) add("ballistic");
+  for (const auto& [word, model] : scene::softModelNames())
+    if (std::any_of(def.soft.begin(), def.soft.end(), [&, m = model](const SoftDef& soft) { return soft.model == m; }))
+      add(word);
+  return all.empty() ? "none" : all;
 }
 
 std::size_t liveParticles(const World& world) {
   const ParticlePool* fluid = world.fluid();
   const ParticlePool* bullets = world.bullets();
-  return (fluid != nullptr ? fluid->size() : 0) + (bullets != nullptr ? bullets->size() : 0);
+  const ParticlePool* soft = world.soft();
+  return (fluid != nullptr ? fluid->size() : 0) + (bullets != nullptr ? bullets->size() : 0) +
+         (soft != nullptr ? soft->size() : 0);
 }
 
 void addBuild(Json& json) {
@@ -66,6 +72,8 @@ void addCost(Json& json, const SummarySource& s) {
   json["sweeps"] = ledger.sweeps;
   json["simulated_seconds"] = number(s.world.time());
   json["wall_seconds"] = number(wall);
+  json["checkpoint_seconds"] = number(s.record.checkpointSeconds);
+  json["checkpoint_bytes"] = s.record.checkpointBytes;
   json["particle_steps"] = ledger.particleSteps;
   json["particle_steps_per_second"] = number(wall > 0.0 ? static_cast<double>(ledger.particleSteps) / wall : 0.0);
   Json limits = Json::object();

@@ -52,6 +52,12 @@ double twoDigits(double value) {
   return unit < 1.0 ? std::round(value) : std::round(value / unit) * unit;
 }
 
+std::string softWords(const Scene& scene) {
+  if (scene.world.soft.empty()) return "";
+  return ", " + counted(scene.world.soft.size(), "soft body", "soft bodies") + " of " +
+         counted(scene.softPoints(), "point", "points");
+}
+
 std::string sentence(const Verdict& verdict) {
   if (!verdict.scene) return "wrong";
   const Scene& scene = *verdict.scene;
@@ -60,8 +66,8 @@ std::string sentence(const Verdict& verdict) {
   return fmt::format("{}: {}, {}, {}, {}, about {:.0f} sub-steps for {} s", soundness,
                      counted(scene.fluidParticles(), "fluid particle", "fluid particles"),
                      counted(scene.bulletCount(), "bullet", "bullets"),
-                     counted(scene.world.bodies.size(), "body", "bodies"), run::bytesInWords(verdict.cost.bytes),
-                     twoDigits(verdict.cost.substeps), scene.duration);
+                     counted(scene.world.bodies.size(), "body", "bodies") + softWords(scene),
+                     run::bytesInWords(verdict.cost.bytes), twoDigits(verdict.cost.substeps), scene.duration);
 }
 
 nlohmann::json report(const Verdict& verdict) {
@@ -81,6 +87,8 @@ nlohmann::json report(const Verdict& verdict) {
   out["fluid_particles"] = scene.fluidParticles();
   out["bullets"] = scene.bulletCount();
   out["bodies"] = scene.world.bodies.size();
+  out["soft_bodies"] = scene.world.soft.size();
+  out["soft_points"] = scene.softPoints();
   out["memory_bytes"] = static_cast<std::uint64_t>(verdict.cost.bytes);
   out["estimated_substeps"] = verdict.cost.substeps;
   return out;

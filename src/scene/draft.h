@@ -21,6 +21,13 @@ struct BlockDraft {
   std::string path;                        // "fluid.block.0"
 };
 
+/// A soft body that has been read, for warnings and for what is placed beside it.
+struct SoftDraft {
+  Place place;                           // of its shape or path (copies share one)
+  std::string path;                      // "soft.jelly"
+  std::shared_ptr<const Polygon> shape;  // in the body's own coordinates; empty: a rope
+};
+
 struct Draft {
   Scene scene;
   std::vector<BlockDraft> fluidBlocks, bulletBlocks;
@@ -31,6 +38,8 @@ struct Draft {
   std::optional<Place> spacingPlace;  // empty: the default
   /// Shapes by the bits of their vertices: a resolved scene writes each copy out, and equal shapes are to be one again.
   std::map<std::string, std::shared_ptr<const Polygon>> shapes;
+  std::map<std::pair<const Polygon*, double>, std::shared_ptr<const TriangleMesh>> meshes;  // by shape and spacing
+  std::vector<SoftDraft> soft;
   bool fluidEmitted = false, bulletsEmitted = false;  // by some emitter
 
   void warn(const Place& place, const std::string& key, const std::string& text) {
@@ -43,6 +52,8 @@ struct Draft {
 std::shared_ptr<const Polygon> readShape(TableReader& parent, const std::string& key, Draft& draft);
 /// The polygon, or an equal one that was there before.
 std::shared_ptr<const Polygon> sharedShape(Polygon polygon, Draft& draft);
+/// From a point to the nearest edge [m]. Cost: O(edges).
+double distanceToOutline(const Polygon& polygon, const Vec2& p);
 /// The node that reads back as this polygon.
 Node shapeNode(const Polygon& polygon);
 
@@ -56,6 +67,7 @@ void readDomain(TableReader& root, Draft& draft);
 void readEmitters(TableReader& root, Draft& draft);
 void readSinks(TableReader& root, Draft& draft);
 void readBodies(TableReader& root, Draft& draft);
+void readSoft(TableReader& root, Draft& draft);
 void readBullets(TableReader& root, Draft& draft);
 void readFluid(TableReader& root, Draft& draft);  // with [model]
 void readOutput(TableReader& root, Draft& draft);
@@ -69,5 +81,7 @@ void seed(Draft& draft);
 void judge(Draft& draft);
 /// Its part for free bodies: overlaps at the start, hinges far away, what reaches out of the domain.
 void judgeFreeBodies(Draft& draft);
+/// Its part for soft bodies: overlaps at the start, triangles too coarse, sag under their own weight.
+void judgeSoft(Draft& draft);
 
 }  // namespace froude::scene

@@ -83,11 +83,13 @@ Estimate estimate(const Scene& scene) {
   Estimate result;
   result.speed = expectedSpeed(scene, true);
   for (const BodyDef& body : world.bodies) result.speed = std::max(result.speed, body.velocity.norm());
-  result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount());
+  result.particles = static_cast<double>(scene.fluidParticles() + scene.bulletCount() + scene.softPoints());
   // Peak resident memory of the program with 10,000 boxes, fixed, scripted or free: 9.5 to 10 kB each.
   constexpr double kBodyBytes = 1e4;
+  constexpr double kSoftBytes = 1e3;  // of a point with its triangles
   result.bytes = static_cast<double>(estimateWorldBytes(world, scene.fluidParticles(), scene.bulletCount())) +
-                 kBodyBytes * static_cast<double>(world.bodies.size());
+                 kBodyBytes * static_cast<double>(world.bodies.size()) +
+                 kSoftBytes * static_cast<double>(scene.softPoints());
   result.bounds = boundsOf(scene, gravity);
   constexpr double kLongest = 0.01;  // [s] that a world steps at once where nothing binds it
   result.substep = std::min(scene.duration, world.timeStep.value_or(kLongest));

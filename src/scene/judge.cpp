@@ -191,6 +191,7 @@ void judge(Draft& draft) {
   judgeTimeStep(draft);
   judgeCuts(draft);
   judgeFreeBodies(draft);
+  judgeSoft(draft);
   if (!draft.scene.world.fluid) return;
   judgeConveyors(draft);
   judgeSlip(draft);

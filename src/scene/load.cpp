@@ -18,7 +18,7 @@ namespace {
 std::string writeResolved(const Node& resolved, const std::string& file) {
   Node ordered;
   for (const char* key : {"format", "title", "seed", "duration", "gravity", "domain", "model", "fluid", "bullet",
-                          "emitter", "sink", "body", "gauge", "output"})
+                          "emitter", "sink", "body", "soft", "gauge", "output"})
     if (const Node* value = resolved.find(key)) ordered.set(key, *value);
   const std::string name = std::filesystem::path(file).filename().string();
   std::string comment;
@@ -33,6 +33,7 @@ void readAll(TableReader& root, Draft& draft) {
   readEmitters(root, draft);
   readSinks(root, draft);
   readBodies(root, draft);
+  readSoft(root, draft);
   readBullets(root, draft);
   readFluid(root, draft);
   readOutput(root, draft);
@@ -65,6 +66,12 @@ std::size_t Scene::fluidParticles() const {
 std::size_t Scene::bulletCount() const {
   std::size_t count = 0;
   for (const SeededBlock& block : bulletBlocks) count += block.positions.size();
+  return count;
+}
+
+std::size_t Scene::softPoints() const {
+  std::size_t count = 0;
+  for (const SoftDef& soft : world.soft) count += soft.mesh->points.size();
   return count;
 }
 

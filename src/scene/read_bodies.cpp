@@ -5,21 +5,13 @@
 #include <set>
 
 #include "scene/draft.h"
+#include "scene/repeat.h"
 
 namespace froude::scene {
 
 namespace {
 
 constexpr double kDegrees = kPi / 180.0;
-constexpr std::int64_t kMostCopies = 100000;
-
-/// [A-Za-z_][A-Za-z0-9_-]*, and dots, which copies have.
-bool goodName(const std::string& name) {
-  if (name.empty() || !(std::isalpha(static_cast<unsigned char>(name[0])) || name[0] == '_')) return false;
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
-  });
-}
 
 TimeFunction inTime(const Expression& expression) {
   return [expression](double t) { return expression.evaluate(0.0, 0.0, t); };
@@ -120,43 +112,6 @@ void turnAboutHinge(const TableReader& body, BodyDef& def) {
   def.velocity = def.spin * leftNormal(center - def.hinge->at);
 }
 
-/// How copies are laid out: count[i] steps along step[i], first index fastest.
-struct Repeat {
-  std::array<std::int64_t, 2> count{1, 1};
-  std::array<Vec2, 2> step{Vec2(0, 0), Vec2(0, 0)};
-  double turn = 0.0;  // [degrees] each
-};
-
-std::optional<Repeat> readRepeat(TableReader& body) {
-  std::optional<TableReader> table = body.table("repeat", {"count", "step", "turn"});
-  if (!table) return std::nullopt;
-  Repeat repeat;
-  const Node& count = table->need("count", "one or two integers, [nx, ny]");
-  const std::size_t n = count.items.size();
-  if (count.kind != Node::Kind::Array || n < 1 || n > 2)
-    table->fail("count", "right are one or two integers, [nx, ny]");
-  for (std::size_t i = 0; i < n; ++i) {
-    const Node& item = count.items[i];
-    if (item.kind != Node::Kind::Integer || item.integer < 1 || item.integer > kMostCopies)
-      table->fail(item, "count", fmt::format("right are integers from 1 to {}", kMostCopies));
-    repeat.count[i] = item.integer;
-  }
-  if (repeat.count[0] * repeat.count[1] > kMostCopies)
-    table->fail("count", fmt::format("asks for {} copies, right are at most {}", repeat.count[0] * repeat.count[1],
-                                     kMostCopies));
-  const Node& step = table->need("step", "a vector for each count, [[dx, dy], [dx, dy]]");
-  if (step.kind != Node::Kind::Array || step.items.size() != n)
-    table->fail("step", fmt::format("right are as many vectors as counts, {} of the form [dx, dy]", n));
-  for (std::size_t i = 0; i < n; ++i) {
-    Node pair;  // a table with one key, so that the vector is checked like any other
-    pair.set("step", step.items[i]);
-    TableReader reader(table->file(), pair, table->path(), {"step"});
-    repeat.step[i] = reader.vector("step");
-  }
-  repeat.turn = table->number("turn", Range::between(-1e6, 1e6), 0.0);
-  return repeat;
-}
-
 /// Adds one body, after checking its name and that it touches the domain.
 void addBody(TableReader& body, BodyDef def, double degrees, Draft& draft, std::set<std::string>& names,
              Node& resolved) {
@@ -188,8 +143,7 @@ void addBody(TableReader& body, BodyDef def, double degrees, Draft& draft, std::
 void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::string>& names, Node& resolved) {
   BodyDef def;
   def.name = body.text("name", "body" + std::to_string(index));
-  if (!goodName(def.name))
-    body.fail("name", fmt::format("is \"{}\", right are a letter or _, then letters, digits, _ and -", def.name));
+  checkBodyName(body, def.name);
   def.shape = readShape(body, "shape", draft);
   const Vec2 position = body.vector("position", Vec2(0.0, 0.0));
   const double degrees = body.number("angle", Range::any(), 0.0);
@@ -203,13 +157,11 @@ void readBody(TableReader& body, std::size_t index, Draft& draft, std::set<std::
   checkMass(body, def);
   const std::optional<Repeat> repeat = readRepeat(body);
   const Repeat r = repeat.value_or(Repeat{});
-  for (std::int64_t k = 0; k < r.count[0] * r.count[1]; ++k) {
+  for (std::int64_t k = 0; k < r.copies(); ++k) {
     BodyDef copy = def;
     if (repeat) copy.name += "." + std::to_string(k);
-    copy.position =
-        position + static_cast<double>(k % r.count[0]) * r.step[0] + static_cast<double>(k / r.count[0]) * r.step[1];
-    const double turned = degrees + static_cast<double>(k) * r.turn;
-    if (std::abs(turned) > 1e9) body.fail("repeat", "turns the last copy by more than 1e9 degrees");
+    copy.position = position + r.offset(k);
+    const double turned = turnedBy(body, r, degrees, k);
     copy.angle = kDegrees * turned;
     if (repeat && def.hinge) {  // at the same place of the copy
       const Transform turn = Transform::of(copy.position, kDegrees * (turned - degrees));

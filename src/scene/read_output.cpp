@@ -6,6 +6,7 @@
 
 #include "export/vdb_frames.h"
 #include "scene/draft.h"
+#include "scene/material_point.h"
 
 namespace froude::scene {
 
@@ -13,17 +14,18 @@ namespace {
 
 PngDef readPng(TableReader& output, const Box& domain) {
   static const Node kEmptyTable;
-  const std::vector<std::string> keys{"width", "view", "color", "range"};
+  const std::vector<std::string> keys{"width", "view", "color", "range", "strain_range"};
   std::optional<TableReader> given = output.table("png", keys);
   TableReader png = given ? *given : TableReader(output.file(), kEmptyTable, "output.png", keys);
   PngDef def;
   def.width = static_cast<int>(png.integer("width", 16, 16384, 1280));
   def.view = png.box("view", domain);
   def.color = png.word("color", {"speed", "pressure", "density"}, "speed");
-  if (png.has("range")) {
-    const Vec2 range = png.vector("range");
-    if (!(range.x() < range.y())) png.fail("range", "right is [min, max] with min < max");
-    def.range = {range.x(), range.y()};
+  for (const auto& [key, range] : {std::pair{"range", &def.range}, std::pair{"strain_range", &def.strainRange}}) {
+    if (!png.has(key)) continue;
+    const Vec2 ends = png.vector(key);
+    if (!(ends.x() < ends.y())) png.fail(key, "right is [min, max] with min < max");
+    *range = {ends.x(), ends.y()};
   }
   output.resolved().set("png", png.resolved());
   return def;
@@ -74,6 +76,8 @@ const std::vector<GaugeType>& gaugeTypes() {
                                              {"profile", {"from", "to", "count"}, true},
                                              {"force", {"body"}, false},
                                              {"pose", {"body"}, false},
+                                             {"tip", {"soft", "at"}, false},
+                                             {"area", {"soft"}, false},
                                              {"energy", {"species"}, false},
                                              {"momentum", {"species"}, false},
                                              {"mass", {"species"}, false},
@@ -88,8 +92,6 @@ const GaugeType& readType(TableReader& gauge, bool hasFluid) {
   std::vector<std::string> names;
   for (const GaugeType& type : gaugeTypes()) names.push_back(type.name);
   const Node* node = gauge.find("type");
-  if (node != nullptr && (node->text == "tip" || node->text == "area"))
-    gauge.fail("type", fmt::format("\"{}\" reads soft bodies, which are not in this version", node->text));
   if (node != nullptr && node->kind == Node::Kind::Text &&
       std::find(names.begin(), names.end(), node->text) == names.end())
     gauge.fail("type", fmt::format("\"{}\" is no type of gauge{}", node->text, suggestion(node->text, names)));
@@ -125,24 +127,55 @@ std::string readBodyName(TableReader& gauge, const std::vector<BodyDef>& bodies)
   return name;
 }
 
+const SoftDef& readSoftName(TableReader& gauge, const std::vector<SoftDef>& soft) {
+  std::vector<std::string> names;
+  for (const SoftDef& def : soft) names.push_back(def.name);
+  const std::string name = gauge.text("soft");
+  if (names.empty()) gauge.fail("soft", fmt::format("\"{}\" names no soft body, the scene has none", name));
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end())
+    gauge.fail("soft", fmt::format("\"{}\" names no soft body{}", name, suggestion(name, names)));
+  return soft[static_cast<std::size_t>(found - names.begin())];
+}
+
+/// The material point of a tip, which must belong to the body.
+Vec2 readMaterialPoint(TableReader& gauge, const SoftDef& soft) {
+  const Vec2 at = gauge.vector("at");
+  const MaterialPoint point(*soft.mesh, at);
+  if (point.distance > 1e-6 * soft.spacing)
+    gauge.fail("at", fmt::format("[{}, {}] is {:.3g} m outside of \"{}\" at rest, in its own coordinates; right is a "
+                                 "point of the body, the nearest is [{}, {}]",
+                                 show(at.x()), show(at.y()), point.distance, soft.name, show(point.nearest.x()),
+                                 show(point.nearest.y())));
+  return at;
+}
+
+Species readSpecies(TableReader& gauge, const WorldDef& world) {
+  const std::string word = gauge.word("species", {"fluid", "bullet", "soft"}, std::nullopt);
+  const Species species = word == "fluid" ? Species::Fluid : word == "bullet" ? Species::Bullet : Species::Soft;
+  const bool there = species == Species::Fluid    ? world.fluid.has_value()
+                     : species == Species::Bullet ? world.bullet.has_value()
+                                                  : !world.soft.empty();
+  if (!there) gauge.fail("species", "the scene has no such particles");
+  return species;
+}
+
 void readParameters(TableReader& gauge, const GaugeType& type, const WorldDef& world, GaugeDef& def) {
   const Box& domain = world.domain.box;
   for (const std::string& key : type.keys) {
     if (key == "axis") def.axis = gauge.word("axis", {"x", "y"}, "x")[0];
     if (key == "quantile") def.quantile = gauge.number("quantile", Range::between(0.0, 1.0), 0.995);
     if (key == "x") def.x = gauge.number("x", Range::between(domain.min.x(), domain.max.x()));
-    if (key == "at") def.at = pointInDomain(gauge, "at", domain);
+    if (key == "soft") def.soft = readSoftName(gauge, world.soft).name;
+    if (key == "at")
+      def.at = def.soft.empty() ? pointInDomain(gauge, "at", domain)
+                                : readMaterialPoint(gauge, readSoftName(gauge, world.soft));
     if (key == "window") def.window = gauge.number("window", Range::notNegative(), 0.0);
     if (key == "from") def.from = pointInDomain(gauge, "from", domain);
     if (key == "to") def.to = pointInDomain(gauge, "to", domain);
     if (key == "count") def.count = static_cast<int>(gauge.integer("count", 2, 100000));
     if (key == "body") def.body = readBodyName(gauge, world.bodies);
-    if (key == "species" && gauge.has("species")) {
-      def.species =
-          gauge.word("species", {"fluid", "bullet"}, std::nullopt) == "fluid" ? Species::Fluid : Species::Bullet;
-      if (def.species == Species::Fluid ? !world.fluid : !world.bullet)
-        gauge.fail("species", "the scene has no such particles");
-    }
+    if (key == "species" && gauge.has("species")) def.species = readSpecies(gauge, world);
   }
 }
 
@@ -163,7 +196,6 @@ void readGauges(TableReader& root, Draft& draft) {
   for (const GaugeType& type : gaugeTypes())
     for (const std::string& key : type.keys)
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
-  keys.emplace_back("soft");
   Node resolved = Node::array();
   std::set<std::string> names;
   for (TableReader& gauge : root.tables("gauge", keys)) {
@@ -174,7 +206,6 @@ void readGauges(TableReader& root, Draft& draft) {
     if (!names.insert(def.name).second)
       gauge.fail("name", fmt::format("\"{}\" is taken by an earlier gauge, right is a name of its own", def.name));
     const GaugeType& type = readType(gauge, draft.scene.world.fluid.has_value());
-    if (gauge.has("soft")) gauge.fail("soft", "soft bodies are not in this version");
     def.type = type.name;
     def.every = gauge.number("every", Range::positive(), draft.scene.output.every);
     if (draft.scene.duration / def.every > 1e8)

@@ -75,6 +75,8 @@ void readCompressible(TableReader& model, CompressibleDef& def) {
                                                                                          : EquationOfState::Linear;
 }
 
+constexpr double kAlmostInviscid = 1e-5;  // [m²/s] that apic may leave out
+
 void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) {
   std::vector<std::string> here, absent;
   for (const char* name : {"pbf", "dfsph", "wcsph", "apic"})
@@ -87,11 +89,26 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
     model.optionalNumber("spacing", spacing);
   }
   if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
-  if (const auto courant = model.optionalNumber("courant", Range::between(0.01, 1.0))) def.courant = *courant;
+  const double most = def.model == "apic" ? 7.0 : 1.0;
+  if (const auto courant = model.optionalNumber("courant", Range::between(0.01, most))) def.courant = *courant;
   const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
   def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
                         : solver == "explicit" ? ViscositySolver::Explicit
                                                : ViscositySolver::Implicit;
+  if (def.model == "apic") {
+    if (def.surfaceTension > 0.0) {
+      model.fail("fluid",
+                 "apic has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
+    }
+    if (def.viscosity > kAlmostInviscid) {
+      model.fail("fluid",
+                 "apic has no viscosity in this version, right are pbf, dfsph and wcsph, or a viscosity of at "
+                 "most 1e-5 m²/s, which it leaves out");
+    }
+    for (const char* key : {"sweeps", "viscosity_solver"}) {
+      if (model.has(key)) model.fail(key, "a key of particle methods, right is to leave it out");
+    }
+  }
   if (def.model == "wcsph") {
     readCompressible(model, def.compressible);
     if (def.surfaceTension > 0.0) {
@@ -103,6 +120,9 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
       if (model.has(key)) model.fail(key, "a key of wcsph alone, right is to leave it out or fluid = \"wcsph\"");
     }
   }
+  SoftSettings& soft = draft.scene.world.softSettings;
+  if (model.has("soft_substeps")) soft.substeps = static_cast<int>(model.integer("soft_substeps", 1, 1000000));
+  if (const auto tolerance = model.optionalNumber("soft_tolerance", Range::positive(1.0))) soft.tolerance = *tolerance;
   draft.scene.world.timeStep = model.optionalNumber("time_step", Range::positive(1e6));
   draft.timeStepPlace = model.place("time_step");
   if (model.has("spacing")) draft.spacingPlace = model.place("spacing");
@@ -140,10 +160,10 @@ void readFluid(TableReader& root, Draft& draft) {
   const bool used = !draft.fluidBlocks.empty() || draft.fluidEmitted;
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
-  TableReader model =
-      tableOrEmpty(root, "model",
-                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support", "sound_speed",
-                    "density_diffusion", "artificial_viscosity", "background_pressure", "equation_of_state"});
+  TableReader model = tableOrEmpty(root, "model",
+                                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support",
+                                    "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure",
+                                    "equation_of_state", "soft_substeps", "soft_tolerance"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;

@@ -29,9 +29,6 @@ void readHeader(TableReader& root, Draft& draft) {
   if (root.has("accuracy"))
     root.fail("accuracy",
               "planning by accuracy is not in this version, right is to leave it out and to choose [model] keys");
-  if (root.has("soft"))
-    throw SceneError(root.keyPlace("soft"), "soft",
-                     "soft bodies are not in this version; this build has: fluid, bullets, fixed and scripted bodies");
   const auto gravity = root.expressions("gravity", "xyt", {0.0, -9.81});
   WorldDef& world = draft.scene.world;
   if (gravity[0].isConstant() && gravity[1].isConstant()) {

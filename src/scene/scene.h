@@ -45,19 +45,21 @@ struct GaugeDef {
   char axis = 'x';                 // front
   double quantile = 0.995;         // front
   double x = 0.0;                  // height
-  Vec2 at{0, 0};                   // pressure, velocity
+  Vec2 at{0, 0};                   // pressure, velocity; tip: of the shape at rest, in its own coordinates
   double window = 0.0;             // pressure [s]; 0: none
   Vec2 from{0, 0}, to{0, 0};       // profile
   int count = 0;                   // profile
   std::string body;                // force, pose
+  std::string soft;                // tip, area
   std::optional<Species> species;  // energy, momentum, mass, count
 };
 
 struct PngDef {
   int width = 1280;
-  Box view;                                    // default: the domain
-  std::string color = "speed";                 // "speed" | "pressure" | "density"
-  std::optional<std::array<double, 2>> range;  // default: fixed from the scene's own scales
+  Box view;                                          // default: the domain
+  std::string color = "speed";                       // "speed" | "pressure" | "density"
+  std::optional<std::array<double, 2>> range;        // default: fixed from the scene's own scales
+  std::optional<std::array<double, 2>> strainRange;  // of soft bodies; default likewise
 };
 
 struct OutputDef {
@@ -90,7 +92,11 @@ struct Scene {
 
   std::size_t fluidParticles() const;
   std::size_t bulletCount() const;
+  std::size_t softPoints() const;
 };
+
+/// The words of `soft.model`.
+const std::vector<std::pair<std::string, SoftModel>>& softModelNames();
 
 /// One `--set PATH=VALUE`, applied after parsing and before checking.
 using Override = std::pair<std::string, std::string>;

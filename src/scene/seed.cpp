@@ -54,11 +54,24 @@ void checkMemory(const Draft& draft) {
 
 namespace {
 
-/// The bodies that a species collides with, and the domain: is a place nearer to them than `clearance`?
+/// A rope as its links, each a rectangle; any other soft body as its shape at rest.
+std::vector<std::shared_ptr<const Polygon>> solidsOf(const SoftDraft& draft, const SoftDef& def) {
+  if (draft.shape) return {draft.shape};
+  std::vector<std::shared_ptr<const Polygon>> links;
+  for (const auto& link : def.mesh->outline) {
+    const Vec2 a = def.mesh->points[link[0]], b = def.mesh->points[link[1]];
+    const Vec2 side = 0.5 * def.thickness * leftNormal(b - a).normalized();
+    links.push_back(std::make_shared<const Polygon>(Polygon::make({a - side, b - side, b + side, a + side})));
+  }
+  return links;
+}
+
+/// The bodies that a species collides with, soft ones too, and the domain: is a place nearer to them than `clearance`?
 class Obstacles {
  public:
-  Obstacles(const WorldDef& world, double clearance, std::uint32_t group, std::uint32_t mask)
-      : domain_(world.domain.box), clearance_(clearance) {
+  Obstacles(const Draft& draft, double clearance, std::uint32_t group, std::uint32_t mask)
+      : domain_(draft.scene.world.domain.box), clearance_(clearance) {
+    const WorldDef& world = draft.scene.world;
     // A hair less than asked for, so that a particle at half a spacing from a wall is not cut by rounding.
     const double room = clearance * (1.0 - 1e-6);
     const std::array<bool, 4>& closed = world.domain.closed;
@@ -67,17 +80,20 @@ class Obstacles {
     for (std::size_t i = 0; i < world.bodies.size(); ++i) {
       const BodyDef& body = world.bodies[i];
       if ((body.group & mask) == 0 || (group & body.collidesWith) == 0) continue;
-      std::shared_ptr<const DistanceField>& field = fields_[body.shape.get()];
-      if (field == nullptr) field = std::make_shared<const DistanceField>(*body.shape, clearance);
-      const Transform transform = Transform::of(body.position, body.angle);
-      bodies_.push_back({i, field.get(), transform, body.shape->transformed(transform).bounds().grown(clearance)});
+      add(i, body.shape, Transform::of(body.position, body.angle));
+    }
+    for (std::size_t i = 0; i < world.soft.size(); ++i) {
+      const SoftDef& soft = world.soft[i];
+      if ((soft.group & mask) == 0 || (group & soft.collidesWith) == 0) continue;
+      for (const auto& solid : solidsOf(draft.soft[i], soft))
+        add(world.bodies.size() + i, solid, Transform::of(soft.position, soft.angle));
     }
     sortIntoCells();
   }
 
   static constexpr int kFree = -1, kDomain = -2;
 
-  /// Index of the first body that blocks the place, kDomain, or kFree.
+  /// Index of the first body that blocks the place (soft ones after the others), kDomain, or kFree.
   int blockedBy(const Vec2& p) const {
     if (!free_.contains(p)) return kDomain;
     for (const std::uint32_t i : cells_[cellOf(p.x(), 0) + static_cast<std::size_t>(cellsAcross_) * cellOf(p.y(), 1)]) {
@@ -97,6 +113,12 @@ class Obstacles {
     Box box;
   };
 
+  void add(std::size_t index, const std::shared_ptr<const Polygon>& shape, const Transform& transform) {
+    std::shared_ptr<const DistanceField>& field = fields_[shape];
+    if (field == nullptr) field = std::make_shared<const DistanceField>(*shape, clearance_);
+    bodies_.push_back({index, field.get(), transform, shape->transformed(transform).bounds().grown(clearance_)});
+  }
+
   std::size_t cellOf(double value, int axis) const {
     const double part = (value - domain_.min[axis]) / (domain_.max[axis] - domain_.min[axis]);
     return static_cast<std::size_t>(std::clamp(std::floor(part * cellsAcross_), 0.0, cellsAcross_ - 1.0));
@@ -115,14 +137,16 @@ class Obstacles {
   Box domain_, free_;
   double clearance_;
   double cellsAcross_ = 1.0;
-  std::map<const Polygon*, std::shared_ptr<const DistanceField>> fields_;
+  std::map<std::shared_ptr<const Polygon>, std::shared_ptr<const DistanceField>> fields_;
   std::vector<Entry> bodies_;
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 
 std::string obstacleName(const WorldDef& world, int blocker) {
   if (blocker == Obstacles::kDomain) return "the edge of the domain";
-  return "body." + world.bodies[static_cast<std::size_t>(blocker)].name;
+  const auto index = static_cast<std::size_t>(blocker);
+  if (index >= world.bodies.size()) return "soft." + world.soft[index - world.bodies.size()].name;
+  return "body." + world.bodies[index].name;
 }
 
 std::vector<Vec2> velocitiesAt(const BlockDraft& block, const std::vector<Vec2>& points) {
@@ -205,12 +229,12 @@ void seed(Draft& draft) {
   const WorldDef& world = draft.scene.world;
   if (!draft.fluidBlocks.empty()) {
     const double dx = world.fluid->spacing;
-    const Obstacles obstacles(world, 0.5 * dx, world.fluid->group, world.fluid->collidesWith);
+    const Obstacles obstacles(draft, 0.5 * dx, world.fluid->group, world.fluid->collidesWith);
     PlacedPoints placed(0.9 * dx);
     for (const BlockDraft& block : draft.fluidBlocks) seedFluidBlock(block, obstacles, placed, draft);
   }
   if (!draft.bulletBlocks.empty()) {
-    const Obstacles obstacles(world, world.bullet->radius, world.bullet->group, world.bullet->collidesWith);
+    const Obstacles obstacles(draft, world.bullet->radius, world.bullet->group, world.bullet->collidesWith);
     for (std::size_t i = 0; i < draft.bulletBlocks.size(); ++i)
       seedBulletBlock(draft.bulletBlocks[i], i, obstacles, draft);
   }

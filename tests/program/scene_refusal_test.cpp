@@ -234,7 +234,6 @@ TEST(SceneRefusal, bodies) {
        "8:20: body.gate.repeat.count: ", "copies"},
       {body + "repeat = { count = [9, 1], step = [[1, 0], [0, 1]] }\n",
        "7:9: body.gate.shape: the body (copy gate.3) lies", ""},
-      {kHead + "[[soft]]\nname = \"jelly\"\n", "5:3: soft: soft bodies are not in this version", ""},
   });
 }
 
@@ -280,9 +279,8 @@ TEST(SceneRefusal, gauges) {
       {gauge + "type = \"toe\"\n[[gauge]]\nname = \"g\"\ntype = \"toe\"\n", "20:8: gauge.g.name: \"g\" is taken", ""},
       {gauge, "16:1: gauge.g.type: is missing", ""},
       {gauge + "type = \"tow\"\n", "18:8: gauge.g.type: \"tow\" is no type of gauge", "\"toe\""},
-      {gauge + "type = \"tip\"\nsoft = \"jelly\"\n", "18:8: gauge.g.type: \"tip\" reads soft bodies",
-       "not in this version"},
-      {gauge + "type = \"area\"\n", "18:8: gauge.g.type: \"area\" reads soft bodies", ""},
+      {gauge + "type = \"tip\"\nsoft = \"jelly\"\n", "19:8: gauge.g.soft: \"jelly\" names no soft body", "none"},
+      {gauge + "type = \"area\"\n", "16:1: gauge.g.soft: is missing", ""},
       {gauge + "type = \"toe\"\nx = 0.5\n", "19:1: gauge.g.x: a gauge of type toe takes no parameter", ""},
       {gauge + "type = \"height\"\n", "16:1: gauge.g.x: is missing", ""},
       {gauge + "type = \"height\"\nx = 2.5\n", "19:5: gauge.g.x: is 2.5", "at most 2"},

@@ -8,7 +8,7 @@ namespace froude::testing {
 namespace {
 
 class NoSlip : public FluidMethod {};
-INSTANTIATE_TEST_SUITE_P(Each, NoSlip, kFluidMethods, methodName);
+INSTANTIATE_TEST_SUITE_P(Each, NoSlip, kViscousMethods, methodName);
 
 TEST_P(NoSlip, a_flow_driven_between_plates_takes_the_parabola) {
   const double force = 0.08, largest = force / (8.0 * kChannelViscosity);  // 0.1 m/s: Re = 1

@@ -20,10 +20,13 @@ class FluidMethod : public ::testing::TestWithParam<const char*> {
   /// For what one method does better than the others.
   static bool pbf() { return GetParam() == std::string("pbf"); }
   /// What cannot hold where sound is a thousandth as fast as in water, or does not hold yet, says so where it stands.
+  static bool apic() { return GetParam() == std::string("apic"); }
   static bool wcsph() { return GetParam() == std::string("wcsph"); }
 };
 
-inline const auto kFluidMethods = ::testing::Values("pbf", "dfsph", "wcsph");
+inline const auto kFluidMethods = ::testing::Values("pbf", "dfsph", "wcsph", "apic");
+/// Those that have viscosity, and walls to which a fluid sticks.
+inline const auto kViscousMethods = ::testing::Values("pbf", "dfsph", "wcsph");
 /// Those that surface tension serves.
 inline const auto kTensionMethods = ::testing::Values("pbf", "dfsph");
 
