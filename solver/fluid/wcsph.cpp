@@ -15,9 +15,8 @@ constexpr double kCourant = 0.2;  // of the support radius a sub-step
 // Walls, gradients and cells stand still in a sub-step: κ of twice the typical and of the highest pressure, from which
 // a row of particles swings against them, and gains by it.
 constexpr double kTypicalStiffness = 0.3, kLargestStiffness = 0.6;
-constexpr float kLone = 0.5f;     // density below which nothing pulls at a particle
-constexpr float kBearing = 0.1f;  // Σ W of neighbours, over that of all that have place, below which one bears nothing
-constexpr double kMach = 0.1;     // largest speed that is to be expected, over c
+constexpr float kLone = 0.5f;       // density below which nothing pulls at a particle
+constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
 constexpr int kMostSteps = 64;      // acoustic ones a sub-step
@@ -78,7 +77,6 @@ void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
        {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &least_, &share_, &sign_}) {
     a->resize(pool.size());
   }
-  alone_.resize(pool.size());
   const bool fresh = soundSpeed_ == 0.0;
   findNear(context);
   findArrangement(context, nextExcess_.data(), diagonal_.data());
@@ -140,8 +138,6 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   const bool open = arrangement_.hasSurface();
   if (open) background_ = 0.0f;
   taken_ = Vec2(0.0, 0.0);
-  const float* lambda = walls_.any() ? walls_.lambda() : nullptr;
-  const auto self = static_cast<float>(volume_ * kernel::wendland(0.0));
   const auto back = fresh ? 0.0f : static_cast<float>(std::min(kMostReturn, kReturn * steps));
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -156,10 +152,6 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       excess_[i] = density[i] > 0.0f ? density[i] - 1.0f : 0.0f;
       if (!arrangement_.atSurface(i)) excess_[i] += back * (nextExcess_[i] - 1.0f - excess_[i]);
       least_[i] = nextExcess_[i] < kLone ? 0.0f : -kNever;
-      const float wall = lambda != nullptr ? lambda[i] : 0.0f;
-      const float neighbors = nextExcess_[i] - wall - self;
-      alone_[i] = nextExcess_[i] < 1.0f && neighbors < kBearing * (1.0f - self) ? 1 : 0;
-      if (alone_[i] != 0) excess_[i] = 0.0f;
       sign_[i] = open && arrangement_.inside(i) && excess_[i] < 0.0f ? -1.0f : 1.0f;
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
@@ -289,7 +281,7 @@ bool Wcsph::sweepStartPressure(const StepContext& context) {
 void Wcsph::limitStiffness() {
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      share_[i] = alone_[i] != 0 ? 0.0f : std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
+      share_[i] = std::min(1.0f, kStiffest / std::max(diagonal_[i], kSmallestDiagonal));
     }
   });
 }
@@ -467,8 +459,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const {
-  return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float) + alone_.capacity();
-}
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float); }
 
 }  // namespace froude

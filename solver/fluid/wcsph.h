@@ -57,8 +57,6 @@ class Wcsph final : public ParticleFluid {
   std::vector<std::array<double, 2>> pairSums_;  // by task
   Vec2 taken_{0.0, 0.0};       // by those in tension, of the momentum of all [units in an acoustic step]
   AlignedArray<float> share_;  // of a gain of density
-  // 1: its density does not change. It would bounce on a wall, which has to stop it as it does in the other methods.
-  AlignedArray<std::uint8_t> alone_;
 };
 
 }  // namespace froude
