@@ -71,4 +71,20 @@ if(TARGET froude)
   file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(froude PROPERTIES INSTALL_RPATH $ORIGIN/${to_libraries})
   install(TARGETS froude RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # The manual page and the completion scripts are the program's own words about its command line.
+  if(NOT CMAKE_CROSSCOMPILING)
+    set(words ${PROJECT_BINARY_DIR}/share)
+    file(MAKE_DIRECTORY ${words})
+    add_custom_command(OUTPUT ${words}/froude.1 ${words}/froude ${words}/_froude ${words}/froude.fish
+      COMMAND froude man > ${words}/froude.1
+      COMMAND froude completion bash > ${words}/froude
+      COMMAND froude completion zsh > ${words}/_froude
+      COMMAND froude completion fish > ${words}/froude.fish
+      DEPENDS froude VERBATIM)
+    add_custom_target(froude_words ALL DEPENDS ${words}/froude.1)
+    install(FILES ${words}/froude.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 OPTIONAL)
+    install(FILES ${words}/froude DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+    install(FILES ${words}/_froude DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
+    install(FILES ${words}/froude.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d OPTIONAL)
+  endif()
 endif()

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "cli/description.h"
 #include "cli/help_texts.h"
 #include "cli/request.h"
 #include "export/vdb_frames.h"
@@ -19,8 +20,10 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 7> kCommands{"run", "check", "explain", "field", "batch", "resume", "doctor"};
+constexpr std::array<std::string_view, 9> kCommands{"run",    "check",  "explain",    "field", "batch",
+                                                    "resume", "doctor", "completion", "man"};
 constexpr int kMostThreads = 1024;
+constexpr int kMostTasks = 1000000;
 constexpr double kMostMetres = 1e9;
 constexpr int kNarrowest = 320, kWidest = 8192;  // picture [pixels]
 
@@ -62,6 +65,7 @@ struct Typed {
   FieldRequest field;
   DoctorRequest doctor;
   study::BatchOptions batch;
+  DescribeRequest describe;
   std::vector<std::string> sets, sweeps;
   std::string accuracy, frames, simd, layers, collect;
   double until = 0.0;
@@ -121,10 +125,22 @@ void addBatch(CLI::App& app, Typed& typed) {
   command.add_flag("--resume", batch.resume, "go on with the batch in the folder, run nothing twice");
   command.add_option("--baseline", batch.baseline, "compare with the results.csv of an earlier batch")
       ->type_name("CSV");
+  command.add_flag("--slurm", batch.slurm, "hand the runs in to Slurm as a job array, one run a task, and end");
+  command.add_option("--task", batch.task, "run this one of the batch in the folder, as a job of --slurm does")
+      ->check(wholeNumber(0, kMostTasks))
+      ->type_name("N");
   command.add_option("--collect", typed.collect, "gather the table of a batch's folder, run nothing")->type_name("DIR");
   addSceneOptions(command, typed);
   addCommonOptions(command, batch.session, typed);
   command.footer(std::string(kBatchFooter));
+}
+
+void addDescriptions(CLI::App& app, Typed& typed) {
+  CLI::App& completion = *app.add_subcommand("completion", "write the script by which a shell completes command lines");
+  completion.add_option("SHELL", typed.describe.shell, "bash, zsh or fish")->type_name("")->required();
+  completion.footer(std::string(kCompletionFooter));
+  CLI::App& manual = *app.add_subcommand("man", "write the manual page");
+  manual.footer(std::string(kManFooter));
 }
 
 void addResume(CLI::App& app, Typed& typed) {
@@ -287,7 +303,12 @@ study::BatchOptions finishBatch(Typed& typed, const CLI::App& command, const std
   }
   if (batch.folder.empty()) throw UsageError("-o DIR is missing: the folder of the batch" + helpHint("batch"));
   while (batch.folder.size() > 1 && batch.folder.back() == '/') batch.folder.pop_back();
-  if (batch.input.files.empty() && !batch.resume && !batch.collect)
+  const bool whole = !batch.input.files.empty() || batch.resume;
+  if (batch.task >= 0 && (whole || batch.slurm || batch.collect))
+    throw UsageError("--task N takes the batch in -o DIR as it is: no scenes, no --resume, no --slurm");
+  if (batch.slurm && command.count("--jobs") > 0)
+    throw UsageError("--jobs is for this machine; Slurm decides how many tasks run at a time");
+  if (!whole && !batch.collect && batch.task < 0)
     throw UsageError("SCENE is required: scenes or a batch file, or --resume" + helpHint("batch"));
   const bool changed = !typed.sweeps.empty() || !typed.sets.empty() || command.count("--frames") > 0;
   if (batch.input.files.empty() && changed)
@@ -358,11 +379,32 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   if (name == "check") return typed.check;
   if (name == "explain") return typed.explain;
   if (name == "field") return finishField(typed, command);
+  if (name == "completion" || name == "man") {
+    if (name == "completion") completionScript({}, typed.describe.shell);
+    return typed.describe;
+  }
   return typed.doctor;
 }
 
+constexpr std::string_view kWhat = "Froude: particles, fluids and soft bodies among rigid polygons, in two dimensions.";
+
 std::string versionLine() {
   return fmt::format("froude {} (commit {}, SIMD {})\n", FROUDE_VERSION, FROUDE_COMMIT, name(bestSimdTarget()));
+}
+
+void build(CLI::App& app, Typed& typed) {
+  app.set_version_flag("--version", versionLine(), "version, commit and SIMD target");
+  app.allow_extras();
+  addRun(app, typed);
+  addReaders(app, typed);
+  addField(app, typed);
+  addBatch(app, typed);
+  addResume(app, typed);
+  addDescriptions(app, typed);
+  app.footer(
+      "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"
+      "  froude run scenes/dam_break.toml\nExit codes: 0 done; 2 the command line is wrong; others by command.");
+  for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
 }
 
 }  // namespace
@@ -386,21 +428,32 @@ std::string quoted(const std::vector<std::string>& arguments) {
   return text;
 }
 
+ProgramText describeProgram() {
+  Typed typed;
+  CLI::App app(std::string(kWhat), "froude");
+  build(app, typed);
+  ProgramText program{std::string(kWhat), FROUDE_VERSION, {}};
+  for (const CLI::App* command : app.get_subcommands({})) {
+    CommandText text{command->get_name(), command->get_description(), command->get_footer(), {}};
+    for (const CLI::Option* option : command->get_options()) {
+      const bool positional = option->get_positional();
+      OptionText entry{{}, "", option->get_description(), positional};
+      if (positional) entry.names.push_back(option->get_name(true, false));
+      for (const std::string& word : option->get_snames()) entry.names.push_back("-" + word);
+      for (const std::string& word : option->get_lnames()) entry.names.push_back("--" + word);
+      if (!positional && option->get_items_expected_max() > 0) entry.argument = option->get_type_name();
+      text.options.push_back(std::move(entry));
+    }
+    program.commands.push_back(std::move(text));
+  }
+  return program;
+}
+
 Request parseCommandLine(const std::vector<std::string>& arguments) {
   requireKnownCommand(arguments);
   Typed typed;
-  CLI::App app("Froude: particles, fluids and soft bodies among rigid polygons, in two dimensions.", "froude");
-  app.set_version_flag("--version", versionLine(), "version, commit and SIMD target");
-  app.allow_extras();
-  addRun(app, typed);
-  addReaders(app, typed);
-  addField(app, typed);
-  addBatch(app, typed);
-  addResume(app, typed);
-  app.footer(
-      "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"
-      "  froude run scenes/dam_break.toml\nExit codes: 0 done; 2 the command line is wrong; others by command.");
-  for (CLI::App* command : app.get_subcommands({})) command->allow_extras();
+  CLI::App app(std::string(kWhat), "froude");
+  build(app, typed);
 
   std::vector<const char*> words;
   words.reserve(arguments.size());

@@ -20,16 +20,27 @@ inline constexpr std::string_view kBatchFooter = R"(Examples:
 
 Each run has a folder below DIR, named by its parameters; DIR/results.csv has a row for each, with its parameters, every
 number of its summary and the statistics of its gauges. Small runs stand side by side, large ones take all cores.
-The last line on stdout is DIR. docs/batches.md describes batch files.
+The last line on stdout is DIR. docs/batches.md describes batch files, docs/scale.md clusters.
 Exit codes: 0 all runs are done; 1 internal error; 2 the command line, a batch file or every scene is wrong, nothing was
 written; 4 the table cannot be written; 5 some runs are not done, the table says why; 130 SIGINT and 143 SIGTERM, after
 a checkpoint of every run at work.)";
 
+inline constexpr std::string_view kCompletionFooter = R"(Example:
+  froude completion bash > ~/.local/share/bash-completion/completions/froude
+
+An installed froude brings the scripts along.
+Exit codes: 0 written; 1 internal error; 2 there is no script for this shell; 4 it cannot be written.)";
+
+inline constexpr std::string_view kManFooter = R"(Example:
+  froude man > froude.1
+
+Exit codes: 0 written; 1 internal error; 2 the command line is wrong; 4 it cannot be written.)";
+
 inline constexpr std::string_view kResumeFooter = R"(Example:
   froude resume out/dam
 
-The run goes on from its checkpoint.h5 with the same bits as if it had never stopped. Files later than the checkpoint
-are dropped first. The last line on stdout is the run's folder.
+The run goes on from its checkpoint.h5 with the same bits as if it had never stopped, or from the one before it where
+that is damaged, which is said. Files later than the checkpoint are dropped first. The last line on stdout is the run's folder.
 Exit codes: 0 done, or there was nothing left to do; 1 internal error; 2 this is not the folder of a run, it has no
 checkpoint, or it was computed with another SIMD target; 3 unstable; 4 the checkpoint cannot be read, or output failed;
 130 SIGINT and 143 SIGTERM, both after a checkpoint.)";

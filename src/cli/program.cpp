@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/description.h"
 #include "cli/doctor.h"
 #include "cli/explain.h"
 #include "cli/field.h"
@@ -32,6 +33,11 @@ struct Dispatch {
   int operator()(const study::BatchOptions& r) const { return study::runBatch(r); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
   int operator()(const FieldRequest& r) const { return fieldCommand(r); }
+  int operator()(const DescribeRequest& r) const {
+    const ProgramText program = describeProgram();
+    fmt::print("{}", r.shell.empty() ? manualPage(program) : completionScript(program, r.shell));
+    return kDone;
+  }
   int operator()(const DoctorRequest& r) const { return doctorCommand(r.json); }
 };
 

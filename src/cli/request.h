@@ -33,12 +33,16 @@ struct FieldRequest {
   bool check = false;
   exporting::FieldPicture picture;
 };
+/// A script for a shell, or the manual page where none is named.
+struct DescribeRequest {
+  std::string shell;
+};
 struct DoctorRequest {
   bool json = false;
 };
 
 using Request = std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest,
-                             FieldRequest, study::BatchOptions, DoctorRequest>;
+                             FieldRequest, study::BatchOptions, DescribeRequest, DoctorRequest>;
 
 /// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
 /// right.

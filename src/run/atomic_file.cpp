@@ -73,6 +73,18 @@ void writeWholeFile(const std::string& path, std::string_view contents) {
   pending.commit();
 }
 
+void keepAs(const std::string& path, const std::string& second) {
+  const std::string beside = second + std::string(kPartSuffix);
+  unlink(beside.c_str());
+  if (link(path.c_str(), beside.c_str()) == 0) {
+    if (std::rename(beside.c_str(), second.c_str()) != 0) unlink(beside.c_str());
+    // Two names of one file: the rename does nothing, and leaves the name beside.
+    unlink(beside.c_str());
+  } else if (errno == EPERM || errno == ENOTSUP || errno == EMLINK) {
+    std::rename(path.c_str(), second.c_str());
+  }
+}
+
 std::string readWholeFile(const std::string& path) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const auto fail = [&] { throw InputError(path + ": cannot be read: " + std::strerror(errno)); };

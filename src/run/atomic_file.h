@@ -31,6 +31,10 @@ class PendingFile {
 /// Writes all of `contents` to `path`. Throws exporting::OutputError and leaves the old file as it was.
 void writeWholeFile(const std::string& path, std::string_view contents);
 
+/// Gives the file a second name, in place of what had that name; a file that is not there is none. On a file system
+/// without links it moves. What fails changes nothing.
+void keepAs(const std::string& path, const std::string& second);
+
 /// Writes all bytes to a file descriptor, going on after interruptions. False with errno set when it cannot.
 bool writeAll(int descriptor, std::string_view bytes);
 

@@ -3,6 +3,9 @@
 #include <froude/base/simd.h>
 #include <froude/version.h>
 
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "run/atomic_file.h"
@@ -49,7 +52,13 @@ void archiveState(Archive& a, World& world, GaugeSet& gauges) {
 
 std::string buildVersion() { return FROUDE_VERSION " (" FROUDE_COMMIT ")"; }
 
-void saveCheckpoint(const std::string& file, World& world, GaugeSet& gauges, const RunRecord& record) {
+bool hasCheckpoint(const std::string& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(folder + "/" + kCheckpointName, ignored) ||
+         std::filesystem::exists(folder + "/" + kOlderCheckpointName, ignored);
+}
+
+std::uint64_t saveCheckpoint(const std::string& folder, World& world, GaugeSet& gauges, const RunRecord& record) {
   Hdf5Writer writer;
   writer.attribute("format_version", kFormat);
   writer.attribute("froude_version", buildVersion());
@@ -60,7 +69,44 @@ void saveCheckpoint(const std::string& file, World& world, GaugeSet& gauges, con
   run["record"] = toJson(record);
   writer.text("run", run.dump(-1, ' ', false, Json::error_handler_t::replace));
   archiveState(writer, world, gauges);
-  writeWholeFile(file, writer.finish());
+  const std::string image = writer.finish();
+  const std::string file = folder + "/" + kCheckpointName;
+  keepAs(file, folder + "/" + kOlderCheckpointName);
+  writeWholeFile(file, image);
+  return image.size();
+}
+
+std::unique_ptr<Checkpoint> openCheckpoint(const std::string& folder, std::vector<std::string>& notes) {
+  if (!hasCheckpoint(folder)) {
+    throw UsageError(folder +
+                     ": it has no checkpoint.h5, so there is nothing to go on from; start again with "
+                     "`froude run " +
+                     folder + "/scene.toml`");
+  }
+  const auto older = [&]() -> std::unique_ptr<Checkpoint> {
+    try {
+      return std::make_unique<Checkpoint>(folder + "/" + kOlderCheckpointName);
+    } catch (const Error&) {  // what is wrong with the newest is the thing to tell
+      return nullptr;
+    }
+  };
+  const auto tell = [&](const std::string& why, const Checkpoint& found) {
+    notes.push_back(
+        fmt::format("warning: {}; the checkpoint before it, of t = {:.6g} s, is taken instead", why, found.time()));
+  };
+  try {
+    return std::make_unique<Checkpoint>(folder + "/" + kCheckpointName);
+  } catch (const InputError& e) {
+    std::unique_ptr<Checkpoint> found = older();
+    if (!found) throw;
+    tell(e.what(), *found);
+    return found;
+  } catch (const UsageError& e) {
+    std::unique_ptr<Checkpoint> found = older();
+    if (!found) throw;
+    tell(e.what(), *found);
+    return found;
+  }
 }
 
 Checkpoint::Checkpoint(const std::string& file) : file_(file), reader_(file) {

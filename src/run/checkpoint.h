@@ -1,7 +1,8 @@
-// checkpoint.h5: the whole state of a run, from which it goes on as if it had never stopped.
+// checkpoint.h5: the whole state of a run, from which it goes on as if it had never stopped; and the one before it.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,13 +22,25 @@ struct RunRecord {
   double fluidArea0 = 0.0;            // at the start [m²]
   int nextFrame = 0;                  // number of the next frame
   std::uint64_t gaugeBytes = 0;       // of gauges.csv that belong to the state
-  std::string reason;                 // why it is not done, in words; not saved
+  // Not saved:
+  std::string reason;              // why it is not done, in words
+  double checkpointSeconds = 0.0;  // that the last one took [s]
+  std::uint64_t checkpointBytes = 0;
 };
 
-/// Saves world, gauges and record, written beside and renamed. Throws exporting::OutputError. Cost: two copies of the
-/// state in memory for as long as it takes, about 70 bytes a particle. Not compressed: deflate takes 42 % off the state
-/// of a flow of 10,000 particles, which is not worth the time of one thread at the checkpoints of a large run.
-void saveCheckpoint(const std::string& file, World& world, GaugeSet& gauges, const RunRecord& record);
+/// Names in the folder of a run.
+inline constexpr const char* kCheckpointName = "checkpoint.h5";
+inline constexpr const char* kOlderCheckpointName = "checkpoint_before.h5";
+
+/// Has the folder a checkpoint of either name, whole or not?
+bool hasCheckpoint(const std::string& folder);
+
+/// Saves world, gauges and record as the folder's checkpoint, written beside and renamed; the one that was there stays
+/// as the older one. Returns its bytes. Throws exporting::OutputError, and leaves both as they were. Cost: two copies
+/// of the state in memory for as long as it takes, about 70 bytes a particle. Not compressed: deflate takes 42 % off
+/// the state of a flow of 10,000 particles, which is not worth the time of one thread at the checkpoints of a large
+/// run.
+std::uint64_t saveCheckpoint(const std::string& folder, World& world, GaugeSet& gauges, const RunRecord& record);
 
 /// A checkpoint that was found whole: its parts can be asked before any world is made.
 class Checkpoint {
@@ -52,6 +65,10 @@ class Checkpoint {
   std::string simd_, stateHash_, version_;
   RunRecord record_;
 };
+
+/// The folder's checkpoint, or the older one where it is missing, damaged or foreign; then `notes` says so. Throws
+/// UsageError when there is none, else what is wrong with the newest when none can be read.
+std::unique_ptr<Checkpoint> openCheckpoint(const std::string& folder, std::vector<std::string>& notes);
 
 /// Version and commit of this build, as checkpoints carry it.
 std::string buildVersion();

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 #include <sched.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -78,6 +81,17 @@ int slurmCores() {
   return cores > 0 ? cores : kNoLimit;
 }
 
+// What a limit on the address space (`ulimit -v`) leaves.
+std::uint64_t addressSpaceLeft() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    return std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const std::uint64_t used = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur > used ? limit.rlim_cur - used : 1;  // 0 would mean unknown
+}
+
 }  // namespace
 
 int usableCores() { return std::max(1, std::min({affinityCores(), quotaCores(), slurmCores()})); }
@@ -95,7 +109,7 @@ std::uint64_t availableMemoryBytes() {
     const std::uint64_t used = std::strtoull(firstLine(folder + "/memory.current").c_str(), nullptr, 10);
     available = std::min(available, most > used ? most - used : 0);
   });
-  return available;
+  return available > 0 ? std::min(available, addressSpaceLeft()) : 0;
 }
 
 std::string cpuName() {
@@ -115,6 +129,11 @@ std::string findProgram(const std::string& name) {
     if (access(file.c_str(), X_OK) == 0) return file;
   }
   return {};
+}
+
+std::string programPath() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).string();
 }
 
 std::string bytesInWords(double bytes) {

@@ -10,7 +10,8 @@ namespace froude::run {
 /// rounded up, limits of parent groups included) and SLURM_CPUS_PER_TASK. At least 1.
 int usableCores();
 
-/// Bytes that can still be allocated without swapping: MemAvailable, less what the control group forbids; 0 if unknown.
+/// Bytes that can still be allocated without swapping: MemAvailable, less what the control group and
+/// `ulimit -v` forbid; 0 if unknown.
 std::uint64_t availableMemoryBytes();
 
 /// "AMD EPYC 9B45"; "unknown" where the system does not say.
@@ -18,6 +19,9 @@ std::string cpuName();
 
 /// The program `name` somewhere on PATH, as a full path; empty when it is not installed.
 std::string findProgram(const std::string& name);
+
+/// The full path of this program.
+std::string programPath();
 
 /// A size for people: "512 MB", "1.3 TB"; decimal units.
 std::string bytesInWords(double bytes);

@@ -21,11 +21,12 @@ constexpr std::size_t kKeptErrors = 4096;  // bytes
 /// What the child starts with: its three standard files, its folder, and signals as a shell would hand them down.
 class SpawnSettings {
  public:
-  SpawnSettings(int errorPipe, const std::string& folder) {
+  SpawnSettings(int errorPipe, const std::string& folder, Listen listen) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions_, errorPipe, STDERR_FILENO);
+    if (listen == Listen::ToAll) posix_spawn_file_actions_adddup2(&actions_, errorPipe, STDOUT_FILENO);
     if (!folder.empty()) posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;
@@ -64,7 +65,7 @@ std::string readTail(int descriptor) {
 
 }  // namespace
 
-ProcessResult runProcess(const std::vector<std::string>& arguments, const std::string& folder) {
+ProcessResult runProcess(const std::vector<std::string>& arguments, const std::string& folder, Listen listen) {
   if (arguments.empty()) throw Error("a process needs the name of a program");
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw Error(arguments[0] + ": cannot be started: " + std::strerror(errno));
@@ -73,7 +74,7 @@ ProcessResult runProcess(const std::vector<std::string>& arguments, const std::s
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   pid_t child = 0;
-  const SpawnSettings settings(ends[1], folder);
+  const SpawnSettings settings(ends[1], folder, listen);
   const int failure = posix_spawnp(&child, argv[0], settings.actions(), settings.attributes(), argv.data(), environ);
   close(ends[1]);
   if (failure != 0) {

@@ -38,8 +38,9 @@ bool isNumbered(std::string_view name, std::string_view before, std::string_view
 // What a run writes at the top of its folder; anything else is somebody's own.
 bool isRunFile(std::string_view name) {
   if (name.ends_with(kPartSuffix)) name.remove_suffix(kPartSuffix.size());
-  constexpr std::array<std::string_view, 8> kNames{"scene.toml", "summary.json", "checkpoint.h5", "gauges.csv",
-                                                   "leaks.csv",  "frames.h5",    "frames.xdmf",   "film.mp4"};
+  constexpr std::array<std::string_view, 9> kNames{
+      "scene.toml", "summary.json", "checkpoint.h5", "checkpoint_before.h5", "gauges.csv", "leaks.csv",
+      "frames.h5",  "frames.xdmf",  "film.mp4"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || isNumbered(name, "frame_", ".png") ||
          isNumbered(name, "frame_", ".vdb");
 }
@@ -82,11 +83,13 @@ bool isEmptyButForLock(const std::string& folder) {
   return true;
 }
 
-// A run that was killed before its first summary: files of a run and nothing else.
-bool holdsOnlyRunFiles(const std::string& folder) {
+// A run that was killed before its first summary: what is written until then, and nothing else.
+bool holdsBeginning(const std::string& folder) {
+  constexpr std::array<std::string_view, 4> kFirst{"scene.toml", "scene.toml.part", "summary.json.part",
+                                                   FolderLock::kName};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name != FolderLock::kName && !isRunFile(name) && !(name == "frames" && entry.is_directory())) return false;
+    if (std::find(kFirst.begin(), kFirst.end(), name) == kFirst.end()) return false;
   }
   return true;
 }
@@ -128,7 +131,7 @@ RunFolder RunFolder::create(const std::string& wanted, const std::string& sceneN
   if (access(path.c_str(), R_OK | X_OK) != 0) throwOutputError(path);
   RunFolder folder(path, false);
   if (isEmptyButForLock(path)) return folder;
-  if (!holdsRun(path) && !(force && holdsOnlyRunFiles(path))) {
+  if (!holdsRun(path) && !(force && holdsBeginning(path))) {
     throw UsageError("-o " + path +
                      ": the folder holds files that are not a run's; name a folder that is absent or empty");
   }

@@ -75,8 +75,10 @@ void RunLoop::checkpoint() {
   }
   if (leakLog_) leakLog_->sync();
   countWallTime();
-  saveCheckpoint(folder_.file("checkpoint.h5"), world_, gauges_, record_);
+  const Clock::time_point begin = Clock::now();
+  record_.checkpointBytes = saveCheckpoint(folder_.path(), world_, gauges_, record_);
   lastCheckpoint_ = Clock::now();
+  record_.checkpointSeconds = std::chrono::duration<double>(lastCheckpoint_ - begin).count();
 }
 
 LoopResult RunLoop::finish(LoopResult result) {

@@ -1,7 +1,6 @@
 #include "run/session.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -42,18 +41,6 @@ bool isDone(const RunFolder& folder) {
   return summary.is_object() && summary.value("status", "") == name(Status::Done);
 }
 
-std::unique_ptr<Checkpoint> findCheckpoint(const RunFolder& folder) {
-  const std::string file = folder.file("checkpoint.h5");
-  struct stat status = {};
-  if (stat(file.c_str(), &status) != 0) {
-    throw UsageError(
-        fmt::format("{0}: it has no checkpoint.h5, so there is nothing to go on from; start again with "
-                    "`froude run {0}/scene.toml`",
-                    folder.path()));
-  }
-  return std::make_unique<Checkpoint>(file);
-}
-
 }  // namespace
 
 Session::Session(Scene scene, SessionOptions options) : options_(std::move(options)), scene_(std::move(scene)) {
@@ -65,7 +52,7 @@ Session::Session(Scene scene, SessionOptions options) : options_(std::move(optio
 }
 
 Session::Session(RunFolder folder, SessionOptions options) : options_(std::move(options)), folder_(std::move(folder)) {
-  const std::unique_ptr<Checkpoint> checkpoint = findCheckpoint(*folder_);
+  const std::unique_ptr<Checkpoint> checkpoint = openCheckpoint(folder_->path(), notes_);
   scene_ = scene::load(folder_->file("scene.toml"));
   scene_.name = checkpoint->record().sceneName;  // pictures without a title carry it
   scene_.world.simd = targetFor(*checkpoint, options_, folder_->path());

@@ -72,6 +72,8 @@ void addCost(Json& json, const SummarySource& s) {
   json["sweeps"] = ledger.sweeps;
   json["simulated_seconds"] = number(s.world.time());
   json["wall_seconds"] = number(wall);
+  json["checkpoint_seconds"] = number(s.record.checkpointSeconds);
+  json["checkpoint_bytes"] = s.record.checkpointBytes;
   json["particle_steps"] = ledger.particleSteps;
   json["particle_steps_per_second"] = number(wall > 0.0 ? static_cast<double>(ledger.particleSteps) / wall : 0.0);
   Json limits = Json::object();

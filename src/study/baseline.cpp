@@ -13,11 +13,24 @@
 namespace froude::study {
 namespace {
 
-constexpr std::array<std::string_view, 17> kNotCompared{
-    "run",        "scene",   "reason", "froude_version", "git_commit",
-    "build_type", "command", "cpu",    "wall_seconds",   "particle_steps_per_second",
-    "compiler",   "threads", "schema", "warnings",       "scene_sha256",
-    "simd",       "frames"};
+constexpr std::array<std::string_view, 18> kNotCompared{"checkpoint_seconds",
+                                                        "run",
+                                                        "scene",
+                                                        "reason",
+                                                        "froude_version",
+                                                        "git_commit",
+                                                        "build_type",
+                                                        "command",
+                                                        "cpu",
+                                                        "wall_seconds",
+                                                        "particle_steps_per_second",
+                                                        "compiler",
+                                                        "threads",
+                                                        "schema",
+                                                        "warnings",
+                                                        "scene_sha256",
+                                                        "simd",
+                                                        "frames"};
 constexpr std::size_t kMostTold = 6;  // changes of a run
 
 std::string sceneKey(const std::string& file) { return std::filesystem::path(file).filename().string(); }

@@ -18,6 +18,7 @@
 #include "study/batch_file.h"
 #include "study/batch_runner.h"
 #include "study/results.h"
+#include "study/slurm.h"
 
 namespace froude::study {
 namespace {
@@ -163,9 +164,9 @@ std::optional<CsvTable> readBaseline(const std::string& file) {
   return table;
 }
 
-// Runs what is not settled yet. `results` are those of the folder, and are kept up to date, on disk too.
-void carryOut(const BatchOptions& options, const BatchPlan& plan, std::vector<RunResult>& results,
-              const run::SignalGuard& signals) {
+// Runs what of the wanted is not settled yet. `results` are those of the folder, and are kept up to date, on disk too.
+void carryOut(const BatchOptions& options, const BatchPlan& plan, const std::vector<std::size_t>& wanted,
+              std::vector<RunResult>& results, const run::SignalGuard& signals) {
   TaskSettings tasks{options.folder, options.session, [&] { return signals.pending(); }};
   tasks.session.quiet = true;
   tasks.session.until = plan.until;
@@ -175,12 +176,12 @@ void carryOut(const BatchOptions& options, const BatchPlan& plan, std::vector<Ru
   settings.jobs = options.jobs;
   settings.quiet = options.session.quiet;
   std::vector<std::size_t> which;
-  for (std::size_t i = 0; i < results.size(); ++i)
+  for (const std::size_t i : wanted)
     if (!results[i].settled()) which.push_back(i);
   Clock::time_point written = Clock::now();
   BatchRunner runner(plan, tasks, settings, [&](std::size_t index, const RunResult& result) {
     results[index] = result;
-    if (Clock::now() - written < kTableEvery) return;
+    if (options.task >= 0 || Clock::now() - written < kTableEvery) return;
     written = Clock::now();
     try {
       writeTable(options, plan, results);
@@ -196,11 +197,56 @@ int collect(const BatchOptions& options, const std::optional<CsvTable>& baseline
   return endWith(exitCodeOf(results), options, plan, results, baseline);
 }
 
+// The runs that are not settled, by number.
+std::vector<std::size_t> unsettled(const std::vector<RunResult>& results) {
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (!results[i].settled()) which.push_back(i);
+  return which;
+}
+
+int handIn(const BatchOptions& options, const BatchPlan& plan, const std::vector<RunResult>& results) {
+  const std::vector<std::size_t> which = unsettled(results);
+  if (which.empty()) {
+    if (!options.session.quiet) fmt::print(stderr, "all runs are settled; nothing was handed in\n");
+    return endWith(exitCodeOf(results), options, plan, results, std::nullopt);
+  }
+  const std::string folder = fs::absolute(options.folder).lexically_normal().string(), script = folder + "/job.sh";
+  run::writeWholeFile(script, jobScript(run::programPath(), folder, which, options.session.threads));
+  const std::string job = submit(script);
+  if (!options.session.quiet)
+    fmt::print("job {}: {} tasks, which compute with {}; `froude batch --collect {}` gathers the table\n", job,
+               which.size(), plan.simd, options.folder);
+  fmt::print("{}\n", options.folder);
+  return run::kDone;
+}
+
+// One run of a job array: the folder of the run is locked, that of the batch is shared with the other tasks.
+int runTask(const BatchOptions& options) {
+  const BatchPlan plan = begunPlan(options.folder);
+  const auto index = static_cast<std::size_t>(options.task);
+  if (index >= plan.runs.size())
+    throw UsageError(fmt::format("--task {}: the batch has runs 0 to {}", options.task, plan.runs.size() - 1));
+  requireUnchanged(plan, options.folder);
+  const run::SignalGuard signals;
+  std::vector<RunResult> results = readResults(plan, options.folder);
+  carryOut(options, plan, {index}, results, signals);
+  const RunResult& result = results[index];
+  if (!result.done() && !result.reason.empty()) fmt::print(stderr, "{}\n", result.reason);
+  fmt::print("{}/{}\n", options.folder, plan.runs[index].folder);
+  if (signals.pending() != 0 && !result.settled()) return 128 + signals.pending();
+  if (result.done()) return run::kDone;
+  if (result.status == "refused") return run::kUsageError;
+  return result.status == "unstable" ? run::kUnstable : run::kOutputError;
+}
+
 }  // namespace
 
 int runBatch(const BatchOptions& options) {
   const std::optional<CsvTable> baseline = readBaseline(options.baseline);
   if (options.collect) return collect(options, baseline);
+  if (options.task >= 0) return runTask(options);
+  if (options.slurm) requireSlurm();
   const run::SignalGuard signals;
   std::error_code error;
   std::optional<run::FolderLock> lock;
@@ -218,7 +264,8 @@ int runBatch(const BatchOptions& options) {
     run::writeWholeFile(planFile(options.folder), toJson(plan));
   }
   std::vector<RunResult> results = readResults(plan, options.folder);
-  carryOut(options, plan, results, signals);
+  if (options.slurm) return handIn(options, plan, results);
+  carryOut(options, plan, unsettled(results), results, signals);
   const int code = signals.pending() != 0 ? 128 + signals.pending() : exitCodeOf(results);
   return endWith(code, options, plan, results, baseline);
 }

@@ -15,6 +15,8 @@ struct BatchOptions {
   std::string folder;  // of the batch
   int jobs = 0;        // runs side by side; 0: by their size
   bool resume = false;
+  bool slurm = false;    // hand the runs in as a job array instead of running them
+  int task = -1;         // run this one of the batch in the folder, alone; -1: all
   bool collect = false;  // gather the table, run nothing
   std::string baseline;  // results.csv of an earlier batch, or empty
   run::SessionOptions session;

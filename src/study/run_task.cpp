@@ -89,8 +89,7 @@ void RunTask::work() {
 }
 
 void RunTask::load() {
-  std::error_code error;
-  if (fs::exists(folder_ + "/checkpoint.h5", error)) {
+  if (run::hasCheckpoint(folder_)) {
     particles_ = std::strtoull(readResult(folder_).value("particles").c_str(), nullptr, 10);
     return;
   }

@@ -148,14 +148,14 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 }
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
     EXPECT_NE(help.find("Example"), std::string::npos) << help;
     EXPECT_NE(help.find(":\n  froude " + std::string(command)), std::string::npos) << help;
     EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor"}) {
+  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }
@@ -229,6 +229,10 @@ TEST(CommandLine, a_batch_that_cannot_be_meant_is_refused) {
   expectComplaint({"batch", "a.toml", "-o", "d", "--sweep", "seed"}, {"--sweep", "seed", "PATH="});
   expectComplaint({"batch", "--resume", "-o", "d", "--sweep", "seed=1"}, {"--sweep", "scenes"});
   expectComplaint({"batch", "a.toml", "--collect", "d"}, {"--collect"});
+  expectComplaint({"batch", "a.toml", "-o", "d", "--task", "1"}, {"--task"});
+  expectComplaint({"batch", "-o", "d", "--task", "-1"}, {"--task", "from 0"});
+  expectComplaint({"batch", "a.toml", "-o", "d", "--slurm", "--jobs", "2"}, {"--jobs", "Slurm"});
+  expectComplaint({"completion", "tcsh"}, {"tcsh", "bash, zsh and fish"});
 }
 
 TEST(CommandLine, quoting_gives_back_what_a_shell_would_split) {

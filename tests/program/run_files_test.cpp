@@ -146,6 +146,15 @@ TEST_F(RunFiles, force_does_not_touch_a_folder_without_a_run) {
   EXPECT_EQ(contentsOf("photos/frame_00001.png"), "mine");
 }
 
+TEST_F(RunFiles, force_replaces_what_a_run_left_that_was_killed_before_its_first_summary) {
+  fs::create_directory("killed");
+  write("killed/scene.toml", "format = 1\n");
+  write("killed/summary.json.part", "{");
+  EXPECT_THROW(RunFolder::create("killed", "s", false), UsageError);
+  RunFolder::create("killed", "s", true);
+  EXPECT_TRUE(fs::is_empty("killed"));
+}
+
 TEST_F(RunFiles, force_without_a_name_takes_the_first_folder) {
   makeRun("out/dam");
   EXPECT_EQ(RunFolder::create("", "dam", true).path(), "out/dam");

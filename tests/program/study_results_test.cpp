@@ -13,6 +13,7 @@
 #include "study/gauge_statistics.h"
 #include "study/results.h"
 #include "study/shares.h"
+#include "study/slurm.h"
 
 namespace froude::study {
 namespace {
@@ -120,6 +121,20 @@ TEST(Baseline, what_is_not_as_it_was_is_marked_and_the_machine_does_not_count) {
   BatchPlan other = twoRuns();
   other.runs[0].parameters[0].second = "0.03";
   EXPECT_EQ(compare(baseline, other, now)[0].mark(), "new");
+}
+
+TEST(JobArray, indices_are_ranges_where_they_follow_each_other) {
+  EXPECT_EQ(arrayIndices({0, 1, 2, 5, 7, 8}), "0-2,5,7-8");
+  EXPECT_EQ(arrayIndices({4}), "4");
+}
+
+TEST(JobArray, the_script_quotes_its_paths_and_asks_for_a_signal_and_a_requeue) {
+  const std::string script = jobScript("/opt/fro ude", "/data/it's 5%", {0, 1}, 3);
+  EXPECT_EQ(script.rfind("#!/bin/sh\n#SBATCH", 0), 0u);
+  for (const char* part :
+       {"--array=0-1\n", "--cpus-per-task=3\n", "--signal=B:TERM@60\n", "--requeue",
+        "'/opt/fro ude' batch -o '/data/it'\\''s 5%' --task", "--output=\"/data/it's 5%%/slurm-%a.log\""})
+    EXPECT_NE(script.find(part), std::string::npos) << part << script;
 }
 
 TEST(Shares, small_runs_have_one_core_and_a_large_one_all) {

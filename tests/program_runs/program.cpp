@@ -48,6 +48,11 @@ Process::Process(const Words& arguments, const fs::path& folder, const Circumsta
       const rlimit limit{size, size};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
+    if (circumstances.addressSpace >= 0) {
+      const auto size = static_cast<rlim_t>(circumstances.addressSpace);
+      const rlimit limit{size, size};
+      setrlimit(RLIMIT_AS, &limit);
+    }
     if (chdir(folder.c_str()) == 0) execv(argv[0], argv.data());
     _exit(127);
   }

@@ -24,6 +24,7 @@ struct Outcome {
 struct Circumstances {
   std::vector<std::pair<std::string, std::string>> environment;  // added
   long fileSizeLimit = -1;                                       // RLIMIT_FSIZE [bytes]
+  long addressSpace = -1;                                        // RLIMIT_AS [bytes]
   std::string stdoutFile;                                        // instead of being caught
   bool terminal = false;                                         // stderr is a terminal
 };
