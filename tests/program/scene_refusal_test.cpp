@@ -94,8 +94,6 @@ TEST(SceneRefusal, the_domain) {
 TEST(SceneRefusal, the_model_and_the_fluid) {
   expectRefusals({
       {kHead + "[model]\nfluid = \"pfb\"\n", "6:9: model.fluid: is \"pfb\"", "\"pbf\""},
-      {kHead + "[model]\nfluid = \"apic\"\n", "6:9: model.fluid: \"apic\" is not in this version",
-       "this build has: pbf, dfsph, wcsph"},
       {kHead + "[model]\nfluid = \"wcsph\"\nsupport = 1\n", "7:11: model.support: is 1", ""},
       {kHead + "[model]\nfluid = \"wcsph\"\nequation_of_state = \"ideal\"\n",
        "7:21: model.equation_of_state: is \"ideal\"", "\"tait\""},
