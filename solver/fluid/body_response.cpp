@@ -68,7 +68,7 @@ void BodyResponse::sumImpulses(const float* kappa, double share) {
 }
 
 // A hinged body has one freedom, its turn: the centre of mass goes along with it.
-void BodyResponse::step(Body& body, const Wrench& impulse) {
+void BodyResponse::step(Body& body, const Wrench& impulse, double past) {
   Eigen::Vector3d rest;
   Eigen::Matrix3d system;
   const std::array<double, 6>& k = body.hold;
@@ -76,7 +76,7 @@ void BodyResponse::step(Body& body, const Wrench& impulse) {
   const Eigen::Vector3d mass(body.mass, body.mass, body.inertia);
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    rest[i] = impulse[at] - body.expected[at] - mass[i] * body.moved[at];
+    rest[i] = impulse[at] - past * body.expected[at] - mass[i] * body.moved[at];
     system(i, i) += mass[i];
   }
   Eigen::Vector3d change;
@@ -89,10 +89,10 @@ void BodyResponse::step(Body& body, const Wrench& impulse) {
   for (int i = 0; i < 3; ++i) body.moved[static_cast<std::size_t>(i)] += change[i];
 }
 
-void BodyResponse::follow(const float* kappa, double share) {
+void BodyResponse::follow(const float* kappa, double share, double past) {
   if (!any()) return;
   sumImpulses(kappa, share);
-  for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b]);
+  for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b], past);
   for (const Link& l : links_) answered_[l.particle] = field_[l.particle];
   for (const Link& l : links_) {
     const Wrench& q = moving_[l.body].moved;

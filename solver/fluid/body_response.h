@@ -36,8 +36,9 @@ class BodyResponse {
   /// stay where it is.
   void startFrom(std::span<const float> field);
   /// One step towards where the pressures κ, times `share`, bring the bodies; writes the field as the fluid now sees
-  /// it.
-  void follow(const float* kappa, double share = 1.0);
+  /// it. past: part of the sub-step that these pressures are of, (0, 1]; a body's motion has all of what was expected
+  /// of the sub-step, and only that part of it is to be found in them.
+  void follow(const float* kappa, double share = 1.0, double past = 1.0);
   /// The field by particle.
   const float* answered() const { return any() ? answered_.data() : field_; }
   /// Tells the bodies what the pressures κ are to them and moves them; also those that the fluid has left. κ may be
@@ -61,7 +62,7 @@ class BodyResponse {
   };
   void add(int owner);
   void sumImpulses(const float* kappa, double share);
-  static void step(Body& body, const Wrench& impulse);
+  static void step(Body& body, const Wrench& impulse, double past = 1.0);
 
   FreeBodies* bodies_ = nullptr;
   std::vector<Body> moving_;

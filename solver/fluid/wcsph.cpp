@@ -89,7 +89,7 @@ void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepSt
   if (fresh) findStartPressure(context);
   takePressures(true);
   for (int k = 0; k < steps; ++k) {
-    kick(context, steps);
+    kick(context, k, steps);
     compressAndDrift(context, steps, k + 1 == steps);
   }
   finish(context, pool, steps);
@@ -334,7 +334,7 @@ void Wcsph::accelerate(const StepContext& context, const ForceLoop& loop) {
   for (const std::array<double, 2>& sum : pairSums_) taken_ += Vec2(sum[0], sum[1]);
 }
 
-void Wcsph::kick(const StepContext& context, int steps) {
+void Wcsph::kick(const StepContext& context, int step, int steps) {
   ForceLoop loop = forceLoop(moveX_.data(), moveY_.data());
   loop.kappa = kappa_.data();
   loop.fallX = fallX_.data();
@@ -349,7 +349,7 @@ void Wcsph::kick(const StepContext& context, int steps) {
     moveY_[i] -= shiftY_[i];
     shiftX_[i] = shiftY_[i] = solvedX_[i] = solvedY_[i] = 0.0f;
   }
-  bodies_.follow(kappa_.data(), steps);
+  bodies_.follow(kappa_.data(), steps, (step + 1.0) / steps);
 }
 
 RateLoop Wcsph::rateLoop(const float* ux, const float* uy) {

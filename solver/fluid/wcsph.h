@@ -39,7 +39,7 @@ class Wcsph final : public ParticleFluid {
   ForceLoop forceLoop(float* ux, float* uy);
   RateLoop rateLoop(const float* ux, const float* uy);
   void accelerate(const StepContext& context, const ForceLoop& loop);
-  void kick(const StepContext& context, int steps);
+  void kick(const StepContext& context, int step, int steps);
   void compress(const StepContext& context, const RateLoop& loop);
   void compressAndDrift(const StepContext& context, int steps, bool last);
   void quietFilms();

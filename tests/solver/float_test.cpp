@@ -62,7 +62,6 @@ INSTANTIATE_TEST_SUITE_P(Each, Float, kFluidMethods, methodName);
 // What it displaces lifts the level of the tank. The finest spacing is for one method: it takes as long as the rest.
 TEST_P(Float, a_square_of_half_the_density_finds_the_draft_of_archimedes_at_several_spacings) {
   if (apic()) GTEST_SKIP() << "does not hold yet: the mean force is 6 % off, not 5 (docs/models/apic.md)";
-  if (wcsph()) GTEST_SKIP() << "does not hold yet: it floats 0.7 spacings too high (docs/models/wcsph.md)";
   for (const double dx : {0.1, 0.05, 0.025}) {
     if (dx < 0.03 && !pbf()) continue;
     const double width = 3.0, depth = 1.6;
@@ -104,7 +103,6 @@ TEST_P(Float, light_and_heavy_bodies_stay_stable) {
 // second is judged, and is not better than a quarter.
 TEST_P(Float, a_disc_in_a_full_circular_tank_falls_with_its_added_mass) {
   if (apic()) GTEST_SKIP() << "does not hold yet: a full tank ends in trouble (docs/models/apic.md)";
-  if (wcsph()) GTEST_SKIP() << "does not hold yet: at half the density it is a third too slow (docs/models/wcsph.md)";
   const double a = 0.2, b = 0.6, dx = 0.02;
   for (const double ratio : {0.5, 2.0, 10.0}) {
     WorldDef def = fluidWorld({{-0.8, -0.8}, {0.8, 0.8}}, dx);
@@ -168,7 +166,6 @@ TEST_P(Float, the_same_bits_on_any_number_of_threads_and_from_a_saved_state) {
 // weight takes its part of it. A motor that stands still is a brake of its torque.
 TEST_P(Float, a_hinged_gate_holds_and_opens_at_the_moment_of_the_water_behind_it) {
   if (apic()) GTEST_SKIP() << "does not hold yet: the gate gives way where it should hold (docs/models/apic.md)";
-  if (wcsph()) GTEST_SKIP() << "does not hold yet: it ends after 6 s where the gate holds (docs/models/wcsph.md)";
   const double dx = 0.025, level = 0.5, top = 0.7, face = 0.95, thick = 0.1, density = 1000.0;
   const double water = 1000.0 * kG * (0.5 * top * level * level - level * level * level / 6.0);
   const double moment = water - density * thick * top * kG * 0.5 * thick;

@@ -28,7 +28,6 @@ class FluidNozzle : public FluidMethod {};
 INSTANTIATE_TEST_SUITE_P(Each, FluidNozzle, kFluidMethods, methodName);
 
 TEST_P(FluidNozzle, a_jet_against_gravity_comes_out_at_its_speed_and_rises_about_as_high_as_that_carries_it) {
-  if (wcsph()) GTEST_SKIP() << "does not hold yet: the tip of the jet rises an eighth too high (docs/models/wcsph.md)";
   const double speed = 6.0;
   World world(fountain(GetParam(), speed));
   double top = 0.0;
