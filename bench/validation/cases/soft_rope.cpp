@@ -114,7 +114,7 @@ const Registered kWeight{
 const std::string kStrip =
     "[{ name = \"strip\", shape = { box = [0.0, -0.025, 1.0, 0.025] }, density = 1000.0, young = 5.46e5, poisson = "
     "0.3, "
-    "damping = 6.0, pin = { box = [-0.01, -0.03, 0.0, 0.03] } }]";
+    "damping = 2.5, pin = { box = [-0.01, -0.03, 0.0, 0.03] } }]";
 const Registered kTriangles{
     {.name = "elastica_triangles",
      .measures = "the same as a body of triangles, L/h = 20",
