@@ -3,6 +3,7 @@ their own, and ended again. Skipped (77) where they are not installed or this us
 
 Usage: slurm_test.py FROUDE"""
 import csv
+import ctypes
 import os
 import shutil
 import signal
@@ -31,6 +32,11 @@ every = 0.01
 frames = []
 checkpoint = 0.2
 """
+
+
+def end_with_this_process():
+    """No daemon outlives a test that was killed."""
+    ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
 
 
 def free_port():
@@ -94,7 +100,8 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP OverTimeLim
     def start(self, name, *words):
         path = shutil.which(name) or os.path.join("/usr/sbin", name)
         with open(os.path.join(self.home, name + ".out"), "w", encoding="utf-8") as log:
-            self.daemons.append(subprocess.Popen([path, *words], stdout=log, stderr=log, stdin=subprocess.DEVNULL))
+            self.daemons.append(subprocess.Popen([path, *words], stdout=log, stderr=log, stdin=subprocess.DEVNULL,
+                                                 preexec_fn=end_with_this_process))
 
     def run(self, *words, **more):
         return subprocess.run(words, capture_output=True, text=True, check=False, env=self.environment, **more)
