@@ -9,12 +9,18 @@ std::optional<Vec2> FreeBodies::hingeArm(int owner) const {
   return Vec2(-Rotation::of(m.angle + dt_ * m.spin).apply(bodies_.hingeAnchor(i)));
 }
 
-int FreeBodies::overTurned(double most) const {
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const auto owner = static_cast<int>(i);
-    if (isFree(owner) && !(turn(owner) < most)) return owner;
+bool overTurned(const StepContext& context, StepStats& stats) {
+  constexpr double kMostTurn = 4.0;  // [rad]
+  const FreeBodies* bodies = context.freeBodies;
+  for (int owner = 0; bodies != nullptr && owner < static_cast<int>(bodies->count()); ++owner) {
+    if (!bodies->isFree(owner) || bodies->turn(owner) < kMostTurn) continue;
+    stats.trouble = Trouble::Turn;
+    stats.troubleValue = bodies->turn(owner);
+    stats.troubleLimit = kMostTurn;
+    stats.troubleAt = bodies->center(owner);
+    return true;
   }
-  return -1;
+  return false;
 }
 
 void FreeBodies::push(int owner, const Wrench& impulse, const Wrench& displacement) {

@@ -5,6 +5,7 @@
 
 #include <froude/solver/coupling/obstacles.h>
 #include <froude/solver/rigid/body_set.h>
+#include <froude/solver/step_context.h>
 
 namespace froude {
 
@@ -39,8 +40,6 @@ class FreeBodies {
   }
   /// The impulse that it is, and how much farther than its motion the body gets by it [m, rad].
   void push(int owner, const Wrench& impulse, const Wrench& displacement);
-  /// The first free body that turns by `most` [rad] or more in the sub-step; −1: none.
-  int overTurned(double most) const;
   double turn(int owner) const { return std::abs(dt_ * bodies_.motion(static_cast<std::size_t>(owner)).spin); }
   /// Obstacles are where the pushed bodies are. Cost: that of Obstacles::beginStep.
   void settle() { obstacles_.beginStep(bodies_, dt_, reach_); }
@@ -50,6 +49,10 @@ class FreeBodies {
   Obstacles& obstacles_;
   double dt_ = 0.0, reach_ = 0.0;
 };
+
+/// Does a free body turn by 4 rad or more in the sub-step, beyond what bounds the step before it is pushed? Round one
+/// that turns a million times, paths would be followed for hours. Says so in `stats`.
+bool overTurned(const StepContext& context, StepStats& stats);
 
 /// Changes the velocities of free bodies by what particles gave them (by owner, of which `expected` they have already);
 /// wakes what was hit. Momentum is kept to rounding.

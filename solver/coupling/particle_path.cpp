@@ -67,4 +67,12 @@ void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double
   result.v = velocity;
 }
 
+Vec2 alongWalls(Vec2 v, const PathResult& path) {
+  for (int k = 0; k < path.contacts; ++k) {
+    const PathResult::Impulse& wall = path.impulses[static_cast<std::size_t>(k)];
+    v -= std::min(0.0, (v - wall.surfaceVelocity).dot(wall.normal)) * wall.normal;
+  }
+  return v;
+}
+
 }  // namespace froude

@@ -45,4 +45,7 @@ struct PathResult {
 void followPath(const Obstacles& obstacles, const Vec2& x, const Vec2& v, double dt, const DiscContact& disc,
                 PathResult& result);
 
+/// What is left of a velocity [m/s] that does not go into any of the walls that the path met.
+Vec2 alongWalls(Vec2 v, const PathResult& path);
+
 }  // namespace froude

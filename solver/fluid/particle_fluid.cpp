@@ -14,19 +14,8 @@
 namespace froude {
 namespace {
 
-constexpr double kMostTurn =
-    4.0;  // [rad] of a free body in a sub-step, beyond what bounds the step before it is pushed
 constexpr double kDisplaced = 0.02;  // [dx] by which a wall has kept a particle from where it was to go
 constexpr double kCellSlack = 1.05;  // cells are larger than the support, for motion inside a solve
-
-// What is left of a velocity that does not go into any of the walls that the path met.
-Vec2 alongWalls(Vec2 v, const PathResult& path) {
-  for (int k = 0; k < path.contacts; ++k) {
-    const PathResult::Impulse& wall = path.impulses[static_cast<std::size_t>(k)];
-    v -= std::min(0.0, (v - wall.surfaceVelocity).dot(wall.normal)) * wall.normal;
-  }
-  return v;
-}
 
 }  // namespace
 
@@ -128,17 +117,6 @@ void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, Impu
   if (tension_.any()) stats.tensionWork += tensionWork(context, pool);
   applyViscosity(context, pool, impulses);
   bookCarried(context, pool, impulses);
-}
-
-// Round a body that turns a million times in a sub-step, paths would be followed for hours.
-bool ParticleFluid::overTurned(const StepContext& context, StepStats& stats) {
-  const int owner = context.freeBodies != nullptr ? context.freeBodies->overTurned(kMostTurn) : -1;
-  if (owner < 0) return false;
-  stats.trouble = Trouble::Turn;
-  stats.troubleValue = context.freeBodies->turn(owner);
-  stats.troubleLimit = kMostTurn;
-  stats.troubleAt = context.freeBodies->center(owner);
-  return true;
 }
 
 void ParticleFluid::predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {

@@ -106,7 +106,6 @@ class ParticleFluid : public FluidModel {
   std::vector<std::uint32_t> occupied_;
 
  private:
-  static bool overTurned(const StepContext& context, StepStats& stats);
   void predict(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void sortByCell(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr double kCourant = 5.0;  // cells a sub-step
 constexpr double kMostCourant = 7.0;
-constexpr int kSmoothed = 3;       // faces to either side that a velocity is smoothed over
-constexpr double kMostTurn = 4.0;  // [rad] of a free body in a sub-step, as for particle methods
+constexpr int kSmoothed = 3;  // faces to either side that a velocity is smoothed over
 constexpr std::size_t kCells = TileGrid::kCells;
 constexpr std::size_t kTileBlock = 4;  // tiles a task
 
@@ -92,17 +91,6 @@ void Apic::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger
   holdCarried(context, pool, impulses);
   takePressure(context, pool);
   meetWalls(context, pool, impulses, stats);
-}
-
-// Round a body that turns a million times in a sub-step, paths would be followed for hours.
-bool Apic::overTurned(const StepContext& context, StepStats& stats) {
-  const int owner = context.freeBodies != nullptr ? context.freeBodies->overTurned(kMostTurn) : -1;
-  if (owner < 0) return false;
-  stats.trouble = Trouble::Turn;
-  stats.troubleValue = context.freeBodies->turn(owner);
-  stats.troubleLimit = kMostTurn;
-  stats.troubleAt = context.freeBodies->center(owner);
-  return true;
 }
 
 void Apic::sortParticles(ParticlePool& pool) {

@@ -29,7 +29,6 @@ class Apic final : public FluidModel {
   void sortParticles(ParticlePool& pool);
   void loadParticles(const ParticlePool& pool);
   void cutCells(const StepContext& context);
-  static bool overTurned(const StepContext& context, StepStats& stats);
   void findCarried(const StepContext& context, const ParticlePool& pool);
   Vec2 addGravity(const StepContext& context, const ParticlePool& pool);
   void addGravityWork(const StepContext& context, const ParticlePool& pool, StepStats& stats) const;

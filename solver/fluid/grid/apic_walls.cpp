@@ -9,14 +9,6 @@ namespace {
 constexpr std::size_t kCells = TileGrid::kCells;
 constexpr std::size_t kTileBlock = 4;  // tiles a task
 
-Vec2 alongWalls(Vec2 v, const PathResult& path) {
-  for (int k = 0; k < path.contacts; ++k) {
-    const PathResult::Impulse& wall = path.impulses[static_cast<std::size_t>(k)];
-    v -= std::min(0.0, (v - wall.surfaceVelocity).dot(wall.normal)) * wall.normal;
-  }
-  return v;
-}
-
 }  // namespace
 
 void Apic::cutCells(const StepContext& context) {
