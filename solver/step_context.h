@@ -27,6 +27,7 @@ class Gravity {
 
 class LeakRecorder;
 class FreeBodies;
+class SoftWalls;
 
 constexpr double kFreeStep = 0.01;  // [s] where nothing binds the step
 
@@ -43,6 +44,8 @@ struct StepContext {
   LeakRecorder* leaks = nullptr;
   /// Null in worlds without free bodies.
   FreeBodies* freeBodies = nullptr;
+  /// Null where no fluid feels the outlines of soft bodies.
+  SoftWalls* softWalls = nullptr;
   /// The scales of the state that it starts from: of all particles [m/s], of gravity and forces [m/s²].
   double maxSpeed = 0.0, acceleration = 0.0;
 };

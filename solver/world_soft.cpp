@@ -14,7 +14,7 @@ std::size_t World::Impl::addSoft(const SoftDef& definition) {
   if (def.domain.periodicX || def.domain.periodicY) {
     throw Error("soft body '" + definition.name + "': a domain with soft bodies has no periodic sides yet");
   }
-  if (soft == nullptr) soft = std::make_unique<SoftBodies>();
+  if (soft == nullptr) soft = std::make_unique<SoftBodies>(def.fluid.has_value());
   soft->add(definition);
   edited = true;
   ++version;

@@ -11,6 +11,8 @@ constexpr double kLargestBodyTravel = 0.25;  // of the support radius in a sub-s
 // A heap that is thrown together is met in small steps; what is faster yet is followed to its impacts.
 constexpr double kShortestBodyStep = 1.0 / 960.0;  // [s]
 constexpr double kSoftStep = 1.0 / 240.0;          // [s] longest of soft bodies, which divide it further
+// Of the support radius; a soft wall that is stopped within a sub-step stands that much farther in or out of the fluid.
+constexpr double kLargestSoftTravel = 0.125;
 constexpr double kRoom = 0.85;                     // [dx] between a particle that a nozzle lets in and any other
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
@@ -97,6 +99,11 @@ StepBound World::Impl::chooseStep(double maxDt) const {
   if (ballistic != nullptr) bound.tighten(bulletStepBound(*def.bullet, accelerationScale()), StepLimit::Bullet);
   if (soft != nullptr) {
     bound.tighten(kSoftStep, StepLimit::Soft);
+    if (fluidModel != nullptr && fluidModel->feelsSoftWalls()) {
+      bound.tighten(fluidModel->longestSoftStep(present.maxSpeed), StepLimit::Soft);
+      const double speed = soft->fastest();
+      if (speed > 0.0) bound.tighten(kLargestSoftTravel * fluidModel->supportRadius() / speed, StepLimit::Wall);
+    }
     if (present.maxSpeed > 0.0) bound.tighten(soft->spacing() / present.maxSpeed, StepLimit::Soft);
   }
   if (bodies.anyMoves()) {
@@ -148,6 +155,8 @@ void World::Impl::advance(double dt, StepStats& stats) {
   impulses.reset(bodies);
   FreeBodies freeBodies(bodies, *obstacles);
   freeBodies.begin(dt, 2.0 * reach);
+  const bool wet = soft != nullptr && fluidModel != nullptr && fluidModel->feelsSoftWalls();
+  SoftWalls* softWalls = wet ? &soft->showWalls(dt, fluidModel->supportRadius()) : nullptr;
   const StepContext context{time,
                             dt,
                             gravity,
@@ -156,6 +165,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
                             fluidCarried,
                             events.leakRecorder(),
                             bodies.anyFree() ? &freeBodies : nullptr,
+                            softWalls,
                             present.maxSpeed,
                             accelerationScale()};
   pushByForce(dt, stats);
@@ -173,7 +183,8 @@ void World::Impl::advance(double dt, StepStats& stats) {
   if (soft != nullptr) {
     MetFluid met;
     if (fluid != nullptr) {
-      met = {fluid.get(), 1.0 / fluidModel->particleMass(), 0.5 * def.fluid->spacing, filterOf(Species::Fluid)};
+      met = {fluid.get(), 1.0 / fluidModel->particleMass(), 0.5 * def.fluid->spacing, filterOf(Species::Fluid),
+             wet};
     }
     soft->advance(context, def.softSettings, bodies, fluid != nullptr ? &met : nullptr, impulses, stats);
   }

@@ -6,7 +6,8 @@
 
 namespace froude {
 
-void BodyResponse::begin(FreeBodies* bodies, const Units& units) {
+void BodyResponse::begin(FreeBodies* bodies, SoftWalls* soft, const Units& units) {
+  soft_.begin(soft, units.spacing, units.mass, units.impulse);
   bodies_ = bodies;
   units_ = units;
   links_.clear();
@@ -19,6 +20,7 @@ void BodyResponse::begin(FreeBodies* bodies, const Units& units) {
 }
 
 void BodyResponse::link(const WallLayer& walls, std::span<const double> x, std::span<const double> y) {
+  soft_.link(walls, x, y);
   if (bodies_ == nullptr) return;
   walls.forEachLink([&](const WallLink& link) {
     if (!bodies_->isFree(link.owner)) return;
@@ -50,6 +52,7 @@ void BodyResponse::add(int owner) {
 }
 
 void BodyResponse::holdBack(const float* diagonal) {
+  soft_.holdBack(diagonal);
   for (const Link& l : links_) {
     const double w = 2.0 / static_cast<double>(std::max(diagonal[l.particle], kSmallestDiagonal));
     std::array<double, 6>& k = moving_[l.body].hold;
@@ -94,6 +97,8 @@ void BodyResponse::follow(const float* kappa, double share, double past) {
   sumImpulses(kappa, share);
   for (std::size_t b = 0; b < moving_.size(); ++b) step(moving_[b], sums_[b], past);
   for (const Link& l : links_) answered_[l.particle] = field_[l.particle];
+  soft_.restore(field_, answered_.data());
+  if (soft_.any()) soft_.follow(kappa, share, past, answered_.data());
   for (const Link& l : links_) {
     const Wrench& q = moving_[l.body].moved;
     answered_[l.particle] -= static_cast<float>(l.x * q[0] + l.y * q[1] + l.moment * q[2]);

@@ -1,11 +1,12 @@
-// Free bodies inside the pressure iterations: how far a fluid's pressures move the bodies that it touches, and what
-// that changes for the fluid's densities.
+// Free bodies, and soft ones (soft_response.h), inside the pressure iterations: how far a fluid's pressures move the
+// bodies that it touches, and what that changes for the fluid's densities.
 #pragma once
 
 #include <vector>
 
 #include <froude/base/aligned.h>
 #include <froude/solver/coupling/free_bodies.h>
+#include <froude/solver/fluid/soft_response.h>
 #include <froude/solver/fluid/wall_layer.h>
 
 namespace froude {
@@ -23,12 +24,15 @@ class BodyResponse {
     double mass;     // of a particle [kg/m]
     double impulse;  // of a displacement by dx of one particle, mass·dx/dt [kg/s]
   };
-  /// All free bodies, at the start of a pressure solve; null: there are none. Without links a body only loses, in
+  /// All free bodies and soft walls, at the start of a pressure solve; null: there are none. Without links a body only loses, in
   /// `settle`, what its motion had of a pressure.
-  void begin(FreeBodies* bodies, const Units& units);
+  void begin(FreeBodies* bodies, SoftWalls* soft, const Units& units);
   /// The links of `walls` to them, of particles at x, y [m].
   void link(const WallLayer& walls, std::span<const double> x, std::span<const double> y);
-  bool any() const { return !links_.empty(); }
+  bool any() const { return !links_.empty() || soft_.any(); }
+  bool anySoft() const { return soft_.any(); }
+  bool anyRigid() const { return !links_.empty(); }
+  SoftResponse& soft() { return soft_; }
 
   /// After the diagonal of the pressure system is known: what holds the bodies back.
   void holdBack(const float* diagonal);
@@ -72,6 +76,7 @@ class BodyResponse {
   const float* field_ = nullptr;
   AlignedArray<float> answered_;
   Units units_{1.0, 1.0, 1.0};
+  SoftResponse soft_;
 };
 
 }  // namespace froude

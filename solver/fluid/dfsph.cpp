@@ -12,6 +12,7 @@ constexpr double kSmoothing = 0.03;  // XSPH
 constexpr int kMinSweeps = 2, kMaxSweeps = 100;
 constexpr int kFreshSweeps = 1000;          // where no pressure is known yet
 constexpr double kTolerance = 1e-4;         // mean change of density in a sub-step
+constexpr double kSoftStrict = 0.1;         // of it, where pressures act on soft bodies: what is left of them drives
 constexpr double kDensityTolerance = 2e-4;  // mean compression
 constexpr int kDensitySweeps = 5;
 constexpr float kStep = 0.8f, kMomentum = 0.4f;  // of a sweep; the spectral radius is 2.5 (walls included)
@@ -134,7 +135,7 @@ void Dfsph::push(const StepContext& context, const float* pressure, float* kappa
 // What the displacements add to the densities, on the mean, and the change of κ that takes it away.
 double Dfsph::runDivergence(const StepContext& context) {
   // A free body follows the pressures sweep by sweep: with momentum a light one is thrown to and fro.
-  const bool free = bodies_.any();
+  const bool free = bodies_.anyRigid();
   const PressureUpdate update{target_.data(),
                               diagonal_.data(),
                               kappa_.data(),
@@ -158,7 +159,8 @@ double Dfsph::runDivergence(const StepContext& context) {
 
 void Dfsph::solveDivergence(const StepContext& context, ParticlePool& pool, StepStats& stats) {
   const bool fresh = largestPressure_ == 0.0;  // nothing was there to warm-start from
-  const double tolerance = (fresh ? 0.1 : 1.0) * pace_ * kTolerance;
+  const double strict = bodies_.anySoft() ? kSoftStrict : 1.0;
+  const double tolerance = (fresh ? 0.1 : 1.0) * pace_ * strict * kTolerance;
   const int most = fresh ? kFreshSweeps : kMaxSweeps;
   bodies_.startFrom({wallGain_.data(), pool.size()});
   bodies_.holdBack(diagonal_.data());

@@ -35,6 +35,10 @@ class FluidModel {
   virtual bool undoesCompression() const { return true; }
   /// Mass of a particle [kg/m].
   virtual double particleMass() const = 0;
+  /// Does its pressure know the outlines of soft bodies (StepContext::softWalls)?
+  virtual bool feelsSoftWalls() const { return false; }
+  /// The longest sub-step in which its pressure follows soft walls, maxSpeed [m/s] over all particles.
+  virtual double longestSoftStep(double) const { return kInfinity; }
   /// What its column "pressure" is times to be p/ρ: the share of a pressure gradient that its particles feel.
   virtual double pressureFactor() const { return 1.0; }
   /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over all particles.

@@ -99,7 +99,7 @@ ParticleFluid::PressureScale ParticleFluid::pressureScale(const ParticlePool& po
 
 void ParticleFluid::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) {
   if (pool.empty()) {
-    bodies_.begin(context.freeBodies, bodyUnits(context.dt));
+    bodies_.begin(context.freeBodies, context.softWalls, bodyUnits(context.dt));
     bodies_.settle(nullptr);
     return;
   }
@@ -199,13 +199,13 @@ void ParticleFluid::holdCarried(bool asVelocity) {
 
 void ParticleFluid::meetWalls(const StepContext& context) {
   const std::size_t n = grid_.size();
-  walls_.build(context.obstacles, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
+  walls_.build(context.obstacles, context.softWalls, grid_, {predictedX_.data(), n}, {predictedY_.data(), n});
   findCellRuns(grid_, occupied_, walls_.hidden(), runs_);
 }
 
 void ParticleFluid::linkBodies(const StepContext& context) {
   const std::size_t n = grid_.size();
-  bodies_.begin(context.freeBodies, bodyUnits(context.dt));
+  bodies_.begin(context.freeBodies, context.softWalls, bodyUnits(context.dt));
   bodies_.link(walls_, {predictedX_.data(), n}, {predictedY_.data(), n});
 }
 
@@ -289,6 +289,7 @@ void ParticleFluid::findWallGain(const StepContext& context, double time) {
     const Vec2 gradient(static_cast<double>(link.gradientX), static_cast<double>(link.gradientY));
     wallGain_[link.particle] -= static_cast<float>(way.dot(gradient));
   });
+  bodies_.soft().addGain(time, wallGain_.data());
 }
 
 // To `change_`, from the excess of density of each particle.
@@ -416,6 +417,7 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
   // The pressure on the walls: each sweep moved its particle by −2κg, and along the wall by the share λ of what it did
   // there.
   const double unit = particleMass() * unit_ / dt;
+  std::size_t softLinks = 0;
   walls_.forEachLink([&](const WallLink& link) {
     const std::uint32_t i = link.particle;
     const Vec2 gradient(link.gradientX, link.gradientY);
@@ -423,6 +425,10 @@ void ParticleFluid::finishPositions(const StepContext& context, ParticlePool& po
     if (walls_.tangent()[i] > 0.0f) {
       const Vec2 along = leftNormal(Vec2(walls_.gradientX()[i], walls_.gradientY()[i]).normalized());
       impulse -= unit * static_cast<double>(link.lambda) * along.dot(Vec2(solvedX_[i], solvedY_[i])) * along;
+    }
+    if (isSoftOwner(link.owner)) {
+      bodies_.soft().give(softLinks++, impulse);
+      return;
     }
     const Vec2 at(x[i], y[i]);
     impulses.add(link.owner, at, impulse, context.obstacles.velocityAt(link.owner, at));

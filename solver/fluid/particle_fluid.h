@@ -24,6 +24,7 @@ class ParticleFluid : public FluidModel {
  public:
   double supportRadius() const final;
   double particleMass() const final;
+  bool feelsSoftWalls() const final { return true; }
   StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) final;
   std::size_t memoryBytes() const override;

@@ -46,8 +46,8 @@ std::size_t recede(std::span<WallEdge> edges, double recession, bool all) {
 
 }  // namespace
 
-void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x,
-                      std::span<const double> y) {
+void WallLayer::build(const Obstacles& obstacles, const SoftWalls* soft, const CellGrid& grid,
+                      std::span<const double> x, std::span<const double> y) {
   const std::size_t n = x.size();
   lambda_.resize(n);
   gradientX_.resize(n);
@@ -68,9 +68,14 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
       std::fill(a->begin() + begin, a->begin() + end, 0.0f);
     }
     std::fill(offset_.begin() + begin, offset_.begin() + end, -1);
-    forEachWithin(
-        obstacles, x, y, begin, end, [&](std::size_t) { return support; },
-        [&](std::size_t i) { integrate(obstacles, grid, x, y, static_cast<std::uint32_t>(i), block); });
+    auto visit = [&](std::size_t i) { integrate(obstacles, soft, grid, x, y, static_cast<std::uint32_t>(i), block); };
+    if (soft == nullptr) {
+      forEachWithin(obstacles, x, y, begin, end, [&](std::size_t) { return support; }, visit);
+      return;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      if (soft->mayBeNear({x[i], y[i]}) || obstacles.clearance({x[i], y[i]}) <= support) visit(i);
+    }
   });
 
   // Each block's words go behind those of the blocks before it.
@@ -95,11 +100,12 @@ void WallLayer::build(const Obstacles& obstacles, const CellGrid& grid, std::spa
   }
 }
 
-void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x,
-                          std::span<const double> y, std::uint32_t i, Block& block) {
+void WallLayer::integrate(const Obstacles& obstacles, const SoftWalls* soft, const CellGrid& grid,
+                          std::span<const double> x, std::span<const double> y, std::uint32_t i, Block& block) {
   std::array<WallEdge, kMaxWallEdges> buffer;
-  const std::size_t n =
-      obstacles.edgesNear({x[i], y[i]}, kernel::kSupport * spacing_, spacing_, filter_, {buffer.data(), buffer.size()});
+  const double support = kernel::kSupport * spacing_;
+  std::size_t n = obstacles.edgesNear({x[i], y[i]}, support, spacing_, filter_, buffer);
+  if (soft != nullptr) n = soft->edgesNear({x[i], y[i]}, support, spacing_, filter_, buffer, n);
   if (n == 0) return;
   const std::span<const WallEdge> edges(buffer.data(), n);
   // Only behind a wall that ends within the support radius, on a face that looks away, can a neighbour be. Round a
@@ -117,8 +123,12 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
   const std::size_t owners = thick ? integrateSolids({buffer.data(), front}, shares, kernel_)
                                    : integrateWalls({buffer.data(), front}, shares, kernel_);
   double pulls = 0.0;
+  bool within = false;  // a soft body, by whose contacts it is parted; its pressure would throw it
   for (std::size_t k = 0; k < owners; ++k) {
-    const WallShare& share = shares[k];
+    WallShare& share = shares[k];
+    // From within a soft body, which the next contact parts from it, its edges take off what lies beyond them of one.
+    if (isSoftOwner(share.owner) && share.lambda < 0.0) share.lambda += 1.0;
+    within = within || (isSoftOwner(share.owner) && share.lambda > 0.5);
     pulls += share.gradient.norm();
     lambda_[i] += static_cast<float>(share.lambda);
     gradientX_[i] += static_cast<float>(share.gradient.x());
@@ -131,10 +141,11 @@ void WallLayer::integrate(const Obstacles& obstacles, const CellGrid& grid, std:
                   0.0f,
                   0.0f,
                   0.0f};
-    if (drag && obstacles.sticks(share.owner)) findDrag({whole.data(), n}, link);
+    if (drag && !isSoftOwner(share.owner) && obstacles.sticks(share.owner)) findDrag({whole.data(), n}, link);
     block.links.push_back(link);
   }
-  if (lambda_[i] > kFilm && std::hypot(gradientX_[i], gradientY_[i]) < kOpposed * pulls) block.films.push_back(i);
+  const bool opposed = std::hypot(gradientX_[i], gradientY_[i]) < kOpposed * pulls;
+  if (within || (lambda_[i] > kFilm && opposed)) block.films.push_back(i);
   const float steepness = gradientX_[i] * gradientX_[i] + gradientY_[i] * gradientY_[i];
   if (lambda_[i] < kMostFilled && steepness > 1e-6f) tangent_[i] = lambda_[i] / ((1.0f - lambda_[i]) * steepness);
 }

@@ -8,6 +8,7 @@
 #include <froude/base/aligned.h>
 #include <froude/particles/cell_grid.h>
 #include <froude/solver/coupling/obstacles.h>
+#include <froude/solver/coupling/soft_walls.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/pair_loops.h>
 
@@ -16,7 +17,7 @@ namespace froude {
 /// The part of a particle's wall gradient that belongs to one owner.
 struct WallLink {
   std::uint32_t particle;
-  std::int32_t owner;  // body index, −1: the domain
+  std::int32_t owner;  // body index, −1: the domain, below: a soft body (softOwner)
   float lambda;
   float gradientX, gradientY;  // [1/dx]
   float normalX, normalY;      // of a surface that fluids stick to, towards the particle; else 0
@@ -31,9 +32,11 @@ class WallLayer {
   WallLayer(double spacing, double recession, kernel::Kind kind, CollisionFilter filter)
       : spacing_(spacing), recession_(recession), kernel_(kind), filter_(filter) {}
 
-  /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Cost: a
-  /// look-up a particle, and the wall integral for those within the support radius of a wall.
-  void build(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y);
+  /// Positions x, y [m] outside all solids, sorted by `grid`; obstacles posed at the end of the sub-step. Soft bodies,
+  /// which may be null, may be overlapped. Cost: a look-up a particle, and the wall integral for those within the
+  /// support radius of a wall.
+  void build(const Obstacles& obstacles, const SoftWalls* soft, const CellGrid& grid, std::span<const double> x,
+             std::span<const double> y);
 
   /// Per particle; 0 away from walls.
   const float* lambda() const { return lambda_.data(); }
@@ -62,7 +65,8 @@ class WallLayer {
       }
     }
   }
-  /// visit(particle) for each particle in a gap between two owners that is too narrow for it, in increasing order.
+  /// visit(particle) for each particle in a gap between two owners that is too narrow for it, or within a soft body, in
+  /// increasing order.
   template <typename Visit>
   void forEachFilm(Visit&& visit) const {
     for (std::size_t b = 0; b < used_; ++b) {
@@ -77,8 +81,8 @@ class WallLayer {
     AlignedArray<std::uint64_t> words;
     AlignedArray<std::uint32_t> films;
   };
-  void integrate(const Obstacles& obstacles, const CellGrid& grid, std::span<const double> x, std::span<const double> y,
-                 std::uint32_t i, Block& block);
+  void integrate(const Obstacles& obstacles, const SoftWalls* soft, const CellGrid& grid, std::span<const double> x,
+                 std::span<const double> y, std::uint32_t i, Block& block);
   static void findDrag(std::span<const WallEdge> edges, WallLink& link);
   void findHidden(std::span<const WallEdge> edges, const CellGrid& grid, std::span<const double> x,
                   std::span<const double> y, std::uint32_t i, Block& block);

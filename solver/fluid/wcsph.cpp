@@ -19,6 +19,7 @@ constexpr float kLone = 0.5f;       // density below which nothing pulls at a pa
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
+constexpr double kSoftStep = 0.5;   // of an acoustic step, where soft walls are: they answer between sub-steps
 constexpr int kMostSteps = 64;      // acoustic ones a sub-step
 constexpr float kStiffest = 1.2f;   // diagonal of div grad from which a fluid is made softer
 // Of what densities differ from the sum over particles, taken back in an acoustic step; and at most in a sub-step.
@@ -61,6 +62,10 @@ Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
 void Wcsph::archive(Archive& a) { a.value("sound speed", soundSpeed_); }
 
 double Wcsph::acousticStep(double speed) const { return kAcoustic * unit_ / (soundSpeed_ + speed); }
+
+double Wcsph::longestSoftStep(double maxSpeed) const {
+  return soundSpeed_ > 0.0 ? kSoftStep * acousticStep(maxSpeed) : kInfinity;
+}
 
 StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = ParticleFluid::stepBound(pool, maxSpeed, gravity);
@@ -113,6 +118,7 @@ void Wcsph::chooseSoundSpeed(const StepContext& context, const ParticlePool& poo
   }
   double speed = flowSpeed_;
   walls_.forEachLink([&](const WallLink& link) {
+    if (isSoftOwner(link.owner)) return;
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
     speed =
         std::max(speed, context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY)).norm());

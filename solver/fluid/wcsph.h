@@ -21,6 +21,7 @@ class Wcsph final : public ParticleFluid {
  public:
   Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool);
   StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
+  double longestSoftStep(double maxSpeed) const override;
   void archive(Archive& archive) override;
   std::size_t memoryBytes() const override;
 

@@ -50,10 +50,13 @@ void forEachColor(const StrainElements& elements, Loop&& loop) {
 
 }  // namespace
 
-SoftBodies::SoftBodies()
+SoftBodies::SoftBodies(bool wet)
     : pool_(PoolSettings{1024, GrowthPolicy::Grow, "soft"}),
       mass_(pool_.addColumn<double>("mass", ColumnKind::State)),
-      bodyOf_(pool_.addColumn<std::uint32_t>("body", ColumnKind::State)) {}
+      bodyOf_(pool_.addColumn<std::uint32_t>("body", ColumnKind::State)) {
+  auto column = [&](const char* name) { return pool_.addColumn<double>(name, ColumnKind::State); };
+  if (wet) wet_ = {column("force_x"), column("force_y"), column("next_vx"), column("next_vy")};
+}
 
 void SoftBodies::add(SoftDef def) {
   auto body = std::make_unique<SoftBody>(std::move(def));
@@ -76,21 +79,27 @@ void SoftBodies::add(SoftDef def) {
     pool_.vy()[i] = v.y();
     pool_.column(mass_)[i] = body->mass[k];
     pool_.column(bodyOf_)[i] = static_cast<std::uint32_t>(bodies_.size());
+    if (!wet_) continue;
+    pool_.column(wet_->nextX)[i] = v.x();
+    pool_.column(wet_->nextY)[i] = v.y();
   }
   frequencySquared_ = std::max(frequencySquared_, body->frequencySquared);
   spacing_ = std::min(spacing_, d.spacing);
   totalMass_ += body->totalMass;
   bodies_.push_back(std::move(body));
   const std::size_t rows = pool_.size() + bodies_.size();
-  for (auto* column : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &fromX_, &fromY_, &startX_, &startY_, &inverseMass_, &free_}) {
+  for (auto* column : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &fromX_, &fromY_, &startX_, &startY_, &middleX_, &middleY_,
+                       &inverseMass_, &free_}) {
     column->resize(rows);
   }
   for (std::size_t k = 0; k < count; ++k) inverseMass_[offset(bodies_.size() - 1) + k] = bodies_.back()->inverseMass[k];
   touches_.resize(bodies_.size());
   meetings_.resize(bodies_.size());
   pairs_.add(*bodies_.back(), offset(bodies_.size() - 1));
+  if (wet_) addWalls(bodies_.size() - 1);
   gravityImpulse_.resize(bodies_.size());
   touchImpulse_.resize(bodies_.size());
+  pressureImpulse_.resize(bodies_.size());
   momentumBefore_.resize(bodies_.size());
   gravityWork_.resize(bodies_.size());
   sweeps_.resize(bodies_.size());
@@ -122,7 +131,7 @@ void SoftBodies::load(const StepContext& context) {
       }
       bodies_[i]->tangled = body(i).isTangled(x_.data() + o, y_.data() + o);
       momentumBefore_[i] = momentum;
-      gravityImpulse_[i] = touchImpulse_[i] = Vec2(0.0, 0.0);
+      gravityImpulse_[i] = touchImpulse_[i] = pressureImpulse_[i] = Vec2(0.0, 0.0);
       gravityWork_[i] = 0.0;
       sweeps_[i] = 0;
       touches_[i].clear();
@@ -160,10 +169,12 @@ void SoftBodies::advance(const StepContext& context, const SoftSettings& setting
   const int parts = partsOf(context.dt, settings);
   const double dt = context.dt / parts;
   load(context);
+  if (fluid != nullptr && fluid->feelsWalls) takePressure(context.dt);
   pushed_.begin(bodies);
   pairs_.find(bodies_, columns(), bodies, fluid, context.dt);
   const bool alone = pairs_.pairCount() == 0 && !bodies.anyFree();
   for (int p = 0; p < parts; ++p) {
+    if (wet_ && p == parts / 2) rememberMiddle();
     const Part part{dt, static_cast<double>(p) / parts, static_cast<double>(p + 1) / parts};
     pushed_.advance(dt);
     pairs_.advanceFluid(dt);
@@ -182,6 +193,7 @@ void SoftBodies::advance(const StepContext& context, const SoftSettings& setting
     book(impulses);
   }
   if (fluid != nullptr) pairs_.storeFluid(*fluid);
+  if (wet_) foresee(context.dt, parts);
   store();
   pushed_.store(bodies, context.dt);
   stats.softParts += static_cast<std::uint64_t>(parts);
@@ -200,7 +212,7 @@ void SoftBodies::report(ImpulseLedger& impulses, StepStats& stats) {
       momentum += body(i).mass[k] * Vec2(vx_[offset(i) + k], vy_[offset(i) + k]);
     }
     // What holds the pinned points gave the rest.
-    const Vec2 held = momentum - momentumBefore_[i] - gravityImpulse_[i] - touchImpulse_[i];
+    const Vec2 held = momentum - momentumBefore_[i] - gravityImpulse_[i] - touchImpulse_[i] - pressureImpulse_[i];
     const std::size_t pin = offset(i) + body(i).def.pinned.front();
     impulses.add(-1, {x_[pin], y_[pin]}, -held, {0.0, 0.0});
   }
@@ -238,6 +250,13 @@ void SoftBodies::feelStrain(const StepContext& context, std::size_t i) {
   std::fill(fx_.begin() + o, fx_.begin() + end, 0.0);
   std::fill(fy_.begin() + o, fy_.begin() + end, 0.0);
   if (!b.inflated.empty()) inflate(i);
+  if (wet_) {
+    const double *x = &pool_.column(wet_->forceX)[first_[i]], *y = &pool_.column(wet_->forceY)[first_[i]];
+    for (std::size_t k = 0; k < b.points(); ++k) {
+      fx_[o + k] += x[k];
+      fy_[o + k] += y[k];
+    }
+  }
   if (!b.isStrain()) {
     bodies_[i]->links.force(columnsOf(i));
     return;

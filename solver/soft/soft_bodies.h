@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <froude/base/archive.h>
 #include <froude/particles/pool.h>
+#include <froude/solver/coupling/soft_walls.h>
 #include <froude/solver/soft/soft_body.h>
 #include <froude/solver/soft/soft_pairs.h>
 #include <froude/solver/step_context.h>
@@ -29,7 +31,8 @@ struct SoftSums {
 /// (XPBD); Macklin et al. 2019 (small steps); Macklin & Müller 2021 (neo-Hookean).
 class SoftBodies {
  public:
-  SoftBodies();
+  /// wet: a fluid's pressure may act on them.
+  explicit SoftBodies(bool wet);
   SoftBodies(const SoftBodies&) = delete;
   SoftBodies& operator=(const SoftBodies&) = delete;
 
@@ -46,6 +49,9 @@ class SoftBodies {
 
   /// Parts that a sub-step of dt [s] is divided into.
   int partsOf(double dt, const SoftSettings& settings) const;
+  /// Their outlines as they are to a fluid in a sub-step of dt [s] that looks `reach` [m] far, ropes left out; what it
+  /// gives them acts evenly in the parts of the `advance` that follows.
+  SoftWalls& showWalls(double dt, double reach);
   double totalMass() const { return totalMass_; }  // [kg/m]
   /// Smallest distance of neighbours in any body [m].
   double spacing() const { return spacing_; }
@@ -56,6 +62,8 @@ class SoftBodies {
   void advance(const StepContext& context, const SoftSettings& settings, BodySet& bodies, const MetFluid* fluid,
                ImpulseLedger& impulses, StepStats& stats);
 
+  /// Largest speed of any point [m/s].
+  double fastest() const;
   SoftSums sums() const;
   SoftSums sumsOf(std::size_t i) const;
   /// As World::softStrain; and how many triangles or links are torn.
@@ -85,6 +93,10 @@ class SoftBodies {
   int correct(const StepContext& context, std::size_t i, double dt, double tolerance);
   void project(const StepContext& context, std::size_t i, double dt);
   void inflate(std::size_t i);
+  void addWalls(std::size_t i);
+  void takePressure(double dt);
+  void rememberMiddle();
+  void foresee(double dt, int parts);
   double strainEnergyOf(std::size_t i) const;
   void meetObstacles(const StepContext& context, const Part& part, std::size_t i);
   void meetFreeBodies(const StepContext& context, const Part& part, std::size_t i);
@@ -103,17 +115,29 @@ class SoftBodies {
   ParticlePool pool_;
   ColumnId<double> mass_;
   ColumnId<std::uint32_t> bodyOf_;
+  // Of worlds with a fluid: its force on each point [N/m], and the velocity that is expected in the next sub-step [m/s].
+  struct Wet {
+    ColumnId<double> forceX, forceY, nextX, nextY;
+  };
+  std::optional<Wet> wet_;
+  SoftWalls walls_;
+  struct Inertia {
+    double own, rate, most;  // [kg/m], its growth [kg/(m·s)], its limit [kg/m]
+  };
+  std::vector<Inertia> wallInertia_;      // by node of the walls
+  std::vector<std::uint32_t> wallPoint_;  // by node of the walls: index in the pool
   std::vector<std::unique_ptr<SoftBody>> bodies_;
   std::vector<std::size_t> first_;
   double frequencySquared_ = 0.0, spacing_ = kInfinity, totalMass_ = 0.0;
-  // Work columns: position, velocity, force, position at the start of the part and of the sub-step.
-  AlignedArray<double> x_, y_, vx_, vy_, fx_, fy_, fromX_, fromY_, startX_, startY_, inverseMass_, free_;
+  // Work columns: position, velocity, force, position at the start of the part and of the sub-step, and in its middle.
+  AlignedArray<double> x_, y_, vx_, vy_, fx_, fy_, fromX_, fromY_, startX_, startY_, middleX_, middleY_, inverseMass_,
+      free_;
   std::vector<std::vector<PairTouch>> touches_;  // by body, of one part
   std::vector<std::vector<Meeting>> meetings_;   // by body, of one part
   std::vector<PairTouch> pairTouches_;           // of one part
   SoftPairs pairs_;
   PushedBodies pushed_;
-  std::vector<Vec2> gravityImpulse_, touchImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
+  std::vector<Vec2> gravityImpulse_, touchImpulse_, pressureImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
   std::vector<int> sweeps_;                                           // by body, of the sub-step
   std::vector<double> gravityWork_;                                   // by body [J/m]
 };

@@ -93,7 +93,6 @@ void SoftPairs::add(const SoftBody& body, std::size_t offset) {
   const std::size_t firstEdge = edges_.size();
   auto addEdge = [&](std::uint32_t a, std::uint32_t b) {
     const double length = (d.mesh->points[b] - d.mesh->points[a]).norm();
-    longest_ = std::max(longest_, length);
     edges_.push_back({base + a, base + b, soft, 0, 0, radius, d.friction, length, rope, d.group, d.collidesWith});
     nodes.push_back(a);
     nodes.push_back(b);
@@ -116,56 +115,19 @@ void SoftPairs::add(const SoftBody& body, std::size_t offset) {
     points_.push_back({base + k, soft, radius, d.friction, d.group, d.collidesWith});
   }
   travel_.resize(edges_.size());
-  cellOf_.resize(edges_.size());
-  sorted_.resize(edges_.size());
+  ends_.resize(2 * edges_.size());
 }
 
 void SoftPairs::sortEdges(const SoftColumns& c, double dt) {
-  box_ = Box();
   double reach = 0.0;
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const Edge& edge = edges_[e];
-    const Vec2 a = at(c.x, c.y, edge.a), b = at(c.x, c.y, edge.b);
-    box_.include(a);
-    box_.include(b);
+    const Vec2 a = ends_[2 * e] = at(c.x, c.y, edge.a), b = ends_[2 * e + 1] = at(c.x, c.y, edge.b);
     const double fastest = std::max(at(c.vx, c.vy, edge.a).squaredNorm(), at(c.vx, c.vy, edge.b).squaredNorm());
     travel_[e] = kSlack * dt * std::sqrt(fastest) + 0.25 * edge.length + edge.radius;
     reach = std::max(reach, travel_[e] + 0.5 * (b - a).norm());
   }
-  origin_ = box_.min;
-  const Vec2 size = box_.size();
-  const double most = 4.0 * static_cast<double>(edges_.size()) + 16.0;
-  cell_ = std::max({reach, std::sqrt(size.x() * size.y() / most), size.maxCoeff() / most, 1e-300});
-  nx_ = static_cast<int>(size.x() / cell_) + 1;
-  ny_ = static_cast<int>(size.y() / cell_) + 1;
-  start_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_) + 1, 0);
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const Vec2 middle = 0.5 * (at(c.x, c.y, edges_[e].a) + at(c.x, c.y, edges_[e].b)) - origin_;
-    cellOf_[e] =
-        static_cast<std::uint32_t>(static_cast<int>(middle.y() / cell_) * nx_ + static_cast<int>(middle.x() / cell_));
-    ++start_[cellOf_[e] + 1];
-  }
-  for (std::size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
-  for (std::size_t e = edges_.size(); e-- > 0;) sorted_[--start_[cellOf_[e] + 1]] = static_cast<std::uint32_t>(e);
-  // Filling from behind has moved each begin one place down.
-  for (std::size_t k = 0; k + 1 < start_.size(); ++k) start_[k] = start_[k + 1];
-  start_.back() = static_cast<std::uint32_t>(edges_.size());
-}
-
-template <typename Visit>
-void SoftPairs::forEachEdgeNear(const Vec2& x, double reach, Visit&& visit) const {
-  const double r = reach + cell_;
-  const Vec2 low = (x - origin_ - Vec2(r, r)) / cell_, high = (x - origin_ + Vec2(r, r)) / cell_;
-  const int x0 = std::max(0, static_cast<int>(std::max(low.x(), -1.0))),
-            y0 = std::max(0, static_cast<int>(std::max(low.y(), -1.0)));
-  const int x1 = std::min(nx_ - 1, static_cast<int>(std::min(high.x(), 1e6)));
-  const int y1 = std::min(ny_ - 1, static_cast<int>(std::min(high.y(), 1e6)));
-  for (int j = y0; j <= y1; ++j) {
-    for (int i = x0; i <= x1; ++i) {
-      const auto cell = static_cast<std::size_t>(j * nx_ + i);
-      for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) visit(sorted_[k]);
-    }
-  }
+  cells_.build(ends_, reach);
 }
 
 bool SoftPairs::areNeighbours(std::span<const std::unique_ptr<SoftBody>> softs, const Point& p, const Edge& e) const {
@@ -182,7 +144,7 @@ void SoftPairs::findCorners(std::span<const std::unique_ptr<SoftBody>> softs, co
     groups |= soft->def.group;
     accepts |= soft->def.collidesWith;
   }
-  const Box reach = box_.grown(cell_);
+  const Box reach = cells_.box().grown(cells_.cell());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyDef& def = bodies.definition(i);
     if ((accepts & def.group) == 0 || (def.collidesWith & groups) == 0) continue;
@@ -207,7 +169,7 @@ void SoftPairs::find(std::span<const std::unique_ptr<SoftBody>> softs, const Sof
   sortEdges(c, dt);
   findCorners(softs, bodies, dt);
   auto consider = [&](std::uint32_t number, const Vec2& x, double reach, auto&& skips) {
-    forEachEdgeNear(x, reach, [&](std::uint32_t e) {
+    cells_.forEachNear(x, reach, [&](std::uint32_t e) {
       const Edge& edge = edges_[e];
       if (skips(edge)) return;
       if (distanceToSegment(x, at(c.x, c.y, edge.a), at(c.x, c.y, edge.b)) > reach + travel_[e]) return;
@@ -237,7 +199,7 @@ void SoftPairs::find(std::span<const std::unique_ptr<SoftBody>> softs, const Sof
   }
   if (fluid == nullptr) return;
   fluid_ = *fluid;
-  const Box reach = box_.grown(cell_ + fluid->radius);
+  const Box reach = cells_.box().grown(cells_.cell() + fluid->radius);
   const auto x = fluid->pool->x(), y = fluid->pool->y(), vx = fluid->pool->vx(), vy = fluid->pool->vy();
   const auto first = static_cast<std::uint32_t>(points_.size() + corners_.size());
   for (std::uint32_t k = 0; k < x.size(); ++k) {
@@ -295,7 +257,8 @@ SoftPairs::Place SoftPairs::placeOf(std::uint32_t number, const SoftColumns& c, 
 
 bool SoftPairs::overlaps(const Place& place, const Edge& e, const SoftColumns& c, Overlap& o) const {
   const Vec2 a = at(c.x, c.y, e.a), along = at(c.x, c.y, e.b) - a;
-  const double square = along.squaredNorm(), radius = e.radius + place.radius;
+  const bool pressed = place.body == kByFluid && fluid_.feelsWalls && !e.twoSided;
+  const double square = along.squaredNorm(), radius = e.radius + (pressed ? 0.0 : place.radius);
   if (!(square > 0.0)) return false;
   o.share = (place.x - a).dot(along) / square;
   if (e.twoSided) {

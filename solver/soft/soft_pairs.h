@@ -8,6 +8,7 @@
 
 #include <froude/fields/world_field.h>
 #include <froude/particles/pool.h>
+#include <froude/solver/coupling/edge_cells.h>
 #include <froude/solver/rigid/body_set.h>
 #include <froude/solver/soft/soft_body.h>
 
@@ -59,6 +60,7 @@ struct MetFluid {
   ParticlePool* pool = nullptr;
   double inverseMass = 0.0, radius = 0.0;  // of a particle [m/kg], [m]
   CollisionFilter filter;
+  bool feelsWalls = false;  // its pressure knows solids' outlines: they are met at distance 0, as polygons are
 };
 
 /// `body` of a touch by a particle of fluid: the impulse stays among what the accounts are about.
@@ -136,8 +138,6 @@ class SoftPairs {
             double end, std::vector<PairTouch>& touches);
   void sortEdges(const SoftColumns& columns, double dt);
   void findCorners(std::span<const std::unique_ptr<SoftBody>> softs, const BodySet& bodies, double dt);
-  template <typename Visit>
-  void forEachEdgeNear(const Vec2& x, double reach, Visit&& visit) const;
   bool areNeighbours(std::span<const std::unique_ptr<SoftBody>> softs, const Point& p, const Edge& e) const;
 
   std::vector<Point> points_;
@@ -147,14 +147,10 @@ class SoftPairs {
   std::vector<Drop> drops_;
   MetFluid fluid_;
   std::vector<Pair> pairs_;
-  // Cells of the edges' middles, counting sort.
-  Vec2 origin_{0, 0};
-  double dt_ = 0.0;  // of the part [s]
-  double cell_ = 1.0, longest_ = 0.0;
-  Box box_;
-  int nx_ = 1, ny_ = 1;
-  std::vector<std::uint32_t> start_, sorted_, cellOf_;
+  EdgeCells cells_;
+  double dt_ = 0.0;             // of the part [s]
   std::vector<double> travel_;  // of an edge in the sub-step [m]
+  std::vector<Vec2> ends_;      // of the edges, two each [m]
 };
 
 }  // namespace froude

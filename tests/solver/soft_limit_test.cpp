@@ -107,35 +107,5 @@ TEST(SoftLimits, statics_do_not_depend_on_how_finely_a_step_is_divided_or_swept)
   EXPECT_NEAR(tips[2], tips[0], 1e-3 * std::abs(tips[0]));
 }
 
-TEST(SoftFluid, water_does_not_pass_a_sheet_and_momentum_closes) {
-  for (const char* model : {"pbf", "dfsph", "wcsph"}) {
-    SoftDef sheet;
-    sheet.mesh = lattice(0.6, 0.04, 30, 2);
-    sheet.spacing = 0.02;
-    sheet.young = 2.0e7;
-    sheet.poisson = 0.3;
-    sheet.position = {0.2, 0.3};
-    sheet.pinned = pinnedWhere(*sheet.mesh, [](const Vec2& p) { return p.x() < 1e-9 || p.x() > 0.6 - 1e-9; });
-    WorldDef def = softWorld({sheet}, Vec2(0.0, -9.81));
-    def.domain.box = {{0.2, 0.0}, {0.8, 1.0}};
-    def.fluid = FluidDef{};
-    def.fluid->model = model;
-    def.fluid->spacing = 0.02;
-    World world(def);
-    std::vector<Vec2> x, v;
-    for (int j = 0; j < 8; ++j) {
-      for (int i = 0; i < 30; ++i) x.emplace_back(0.21 + 0.02 * i, 0.36 + 0.02 * j), v.emplace_back(0.0, 0.0);
-    }
-    world.addFluid(x, v);
-    ASSERT_TRUE(world.step(0.5).ok()) << model;
-    for (const double y : world.fluid()->y()) EXPECT_GT(y, 0.32) << model;
-    const Ledger& l = world.ledger();
-    const Totals t = world.totals();
-    // The fluids' own loops are in single precision.
-    EXPECT_LT((t.momentum - l.momentum0 - l.impulse).norm(), 1e-6 * t.mass) << model;
-    EXPECT_LT(tipOf(world, 0, Vec2(0.3, 0.02)).y(), -1e-4) << model;
-  }
-}
-
 }  // namespace
 }  // namespace froude
