@@ -195,7 +195,8 @@ void Apic::spreadChange() {
   for (FaceComponent* c : {&faces_.x, &faces_.y}) {
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t place = (begin + 1) * kCells; place < (end + 1) * kCells; ++place) {
-        if (c->solved[place] == 0.0f) c->value[place] += c->known[place] * c->change[place];
+        const float more = c->known[place] * c->change[place];
+        c->value[place] += c->solved[place] == 0.0f ? more : 0.0f;
       }
     });
   }

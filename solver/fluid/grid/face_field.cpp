@@ -74,10 +74,10 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
   linkTiles(*tiles_, links_);
   const TileGrid& tiles = *tiles_;
   for (FaceComponent* c : {&x, &y}) {
-    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->change, &c->shift, &c->open, &c->solved, &c->known})
-      tiles.clear(*field);
+    for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved}) tiles.clear(*field);
+    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->open, &c->known}) field->resize(tiles.values());
   }
-  tiles.clear(node);
+  node.resize(tiles.values());
   sumsOf_.assign(tiles.size() + 1, 0);
   std::uint32_t count = 0;
   for (std::size_t t = 1; t <= tiles.size(); ++t) {
