@@ -66,7 +66,7 @@ Obstacles::Distance Apic::wallBehind(const Obstacles& obstacles, const Vec2& at)
 void Apic::holdWalls(const StepContext& context) {
   const TileGrid& tiles = particles_.tiles();
   auto hold = [&](FaceComponent& c, const FaceComponent& other, int axis, AlignedArray<float>& held) {
-    held.resize(tiles.values());
+    tiles.fit(held);
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin + 1; t <= end; ++t) {
         TileHalo value, known;
