@@ -103,7 +103,8 @@ void Wcsph::findStartRates(const StepContext& context) {
   compress(context, loop);
 }
 
-// To `nextExcess_` the pressures before, to `excess_` those with what the rates that they leave ask for. Returns Σ|gain|.
+// To `nextExcess_` the pressures before, to `excess_` those with what the rates that they leave ask for. Returns
+// Σ|gain|.
 double Wcsph::sweepStart(const StepContext& context, float momentum) {
   AlignedArray<float>& last = smoothX_;
   findStartRates(context);
