@@ -67,7 +67,7 @@ void Apic::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger
   loadParticles(pool);
   findCarried(context, pool);
   cutCells(context);
-  faces_.collect(particles_, columns(), transferLoops(context.simd));
+  faces_.collect(particles_, columns(), context.simd);
   const Vec2 fall = addGravity(context, pool);
   stats.gravityImpulse += fall;
   faces_.extrapolate(1);
