@@ -35,8 +35,8 @@ void GridPressure::begin(const CutGrid& grid, const CutCells& cuts, std::span<co
   cuts_ = &cuts;
   tiles_ = &particles.tiles();
   for (AlignedArray<float>* field : {&value_, &right_, &shift_}) tiles_->clear(*field);
-  for (AlignedArray<float>* field : {&area_, &density_, &steepX_, &steepY_}) field->resize(tiles_->values());
-  kind_.resize(tiles_->values());
+  for (AlignedArray<float>* field : {&area_, &density_, &steepX_, &steepY_}) tiles_->fit(*field);
+  tiles_->fit(kind_);
   wet_.resize(tiles_->size() + 1);
   forEachTile(*tiles_, [&](std::size_t t) { fillTile(t, faces); });
   listCutCells();
