@@ -74,10 +74,10 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
   linkTiles(*tiles_, links_);
   const TileGrid& tiles = *tiles_;
   for (FaceComponent* c : {&x, &y}) {
-    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->change, &c->shift, &c->open, &c->solved, &c->known})
-      tiles.clear(*field);
+    for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved}) tiles.clear(*field);
+    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->open, &c->known}) tiles.fit(*field);
   }
-  tiles.clear(node);
+  tiles.fit(node);
   sumsOf_.assign(tiles.size() + 1, 0);
   std::uint32_t count = 0;
   for (std::size_t t = 1; t <= tiles.size(); ++t) {
@@ -137,7 +137,7 @@ void FaceField::start(Front& front, AlignedArray<float>& values, const AlignedAr
   front.fresh.resize(count * kSide);
   front.extent.resize(count);
   front.moves.resize(count);
-  front.next.resize(tiles_->values());
+  tiles_->fit(front.next);
   front.extent[0] = kNothing;
   const GridLoops& loops = gridLoops(simd_);
   forEachTile(*tiles_, [&](std::size_t t) {

@@ -44,6 +44,15 @@ double sumOf(const GridLevel& level) {
   return all;
 }
 
+// By an eighth, as TileGrid's fields.
+void growTo(AlignedArray<float>& field, std::size_t places) {
+  if (places > field.capacity()) {
+    field.clear();
+    field.reserve(places + places / 8);
+  }
+  field.resize(places);
+}
+
 std::int32_t halved(std::int32_t period) { return (period + 1) / 2; }
 
 }  // namespace
@@ -73,10 +82,10 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
   const std::size_t places = finest ? ground.size() : level.grid->values();
   for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
     a->clear();
-    a->resize(places);
+    growTo(*a, places);
   }
   for (AlignedArray<float>* a : {&level.ar, &level.diagonal, &level.inverse}) {
-    a->resize(places);
+    growTo(*a, places);
     std::fill_n(a->data(), TileGrid::kCells, 0.0f);
   }
   level.sums.resize(level.tiles());
