@@ -20,8 +20,8 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 10> kCommands{"run",    "check", "explain", "field",      "batch",
-                                                     "resume", "chart", "doctor",  "completion", "man"};
+constexpr std::array<std::string_view, 11> kCommands{"run",   "check", "explain", "field",      "batch", "resume",
+                                                     "chart", "bench", "doctor",  "completion", "man"};
 constexpr int kMostThreads = 1024;
 constexpr int kMostTasks = 1000000;
 constexpr double kMostMetres = 1e9;
@@ -66,9 +66,10 @@ struct Typed {
   DoctorRequest doctor;
   study::BatchOptions batch;
   plan::ChartOptions chart;
+  plan::ScalingOptions scaling;
   DescribeRequest describe;
   std::vector<std::string> sets, sweeps;
-  std::string accuracy, frames, simd, layers, collect, cases, models;
+  std::string accuracy, frames, simd, layers, collect, cases, models, benchmark, subjects;
   double until = 0.0;
 };
 
@@ -152,6 +153,20 @@ void addChart(CLI::App& app, Typed& typed) {
       ->check(wholeNumber(1, kMostThreads))
       ->type_name("N");
   command.footer(std::string(kChartFooter));
+}
+
+void addBench(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("bench", "measure how time and memory grow with particles and threads");
+  command.add_option("WHAT", typed.benchmark, "scaling")->type_name("")->required();
+  command.add_flag("--quick", typed.scaling.quick, "two sizes, one short run each");
+  command.add_option("-o", typed.scaling.folder, "the folder of rows and pictures; default: out/scaling")
+      ->type_name("DIR");
+  command.add_option("--subjects", typed.subjects, "of apic,bullets,dfsph,pbf,soft,wcsph; default: all")
+      ->type_name("LIST");
+  command.add_option("--limit", typed.scaling.limit, "no larger size when one took longer; default: 30")
+      ->check(seconds())
+      ->type_name("SECONDS");
+  command.footer(std::string(kBenchFooter));
 }
 
 void addDescriptions(CLI::App& app, Typed& typed) {
@@ -396,6 +411,14 @@ plan::ChartOptions finishChart(Typed& typed, const CLI::App& command) {
   return std::move(typed.chart);
 }
 
+plan::ScalingOptions finishBench(Typed& typed, const CLI::App& command) {
+  if (typed.benchmark != "scaling")
+    throw UsageError(fmt::format("bench {}: there is no such benchmark; there is scaling", typed.benchmark));
+  if (typed.scaling.folder.empty()) throw UsageError("-o: the name of the folder is empty");
+  if (command.count("--subjects") > 0) typed.scaling.subjects = CLI::detail::split(typed.subjects, ',');
+  return std::move(typed.scaling);
+}
+
 Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
   const std::string& name = command.get_name();
   if (name == "run") return finishRun(typed, command, arguments);
@@ -408,6 +431,7 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   if (name == "explain") return typed.explain;
   if (name == "field") return finishField(typed, command);
   if (name == "chart") return finishChart(typed, command);
+  if (name == "bench") return finishBench(typed, command);
   if (name == "completion" || name == "man") {
     if (name == "completion") completionScript({}, typed.describe.shell);
     return typed.describe;
@@ -430,6 +454,7 @@ void build(CLI::App& app, Typed& typed) {
   addBatch(app, typed);
   addResume(app, typed);
   addChart(app, typed);
+  addBench(app, typed);
   addDescriptions(app, typed);
   app.footer(
       "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"

@@ -149,7 +149,7 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
   for (const char* command :
-       {"run", "check", "explain", "field", "batch", "resume", "chart", "doctor", "completion", "man"}) {
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "bench", "doctor", "completion", "man"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
     EXPECT_NE(help.find("Example"), std::string::npos) << help;
     EXPECT_NE(help.find(":\n  froude " + std::string(command)), std::string::npos) << help;
@@ -157,7 +157,7 @@ TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
   for (const char* command :
-       {"run", "check", "explain", "field", "batch", "resume", "chart", "doctor", "completion", "man"}) {
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "bench", "doctor", "completion", "man"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }
