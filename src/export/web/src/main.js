@@ -2,9 +2,10 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { showBatch } from './batch.js';
+import { showField } from './field.js';
 import { showRun } from './run.js';
 
-const kinds = { run: showRun, batch: showBatch };
+const kinds = { run: showRun, batch: showBatch, field: showField };
 
 const page = JSON.parse(document.getElementById('data').textContent);
 document.title = page.title;
