@@ -32,9 +32,15 @@ class Wcsph final : public ParticleFluid {
   void findDiagonal();
   void limitStiffness();
   void giveBack();
+  // wcsph_start.cpp
   void findTurning(const StepContext& context);
   void findStartPressure(const StepContext& context);
+  bool liftStartPressure(const StepContext& context);
   bool sweepStartPressure(const StepContext& context);
+  void startFromNothing(float step);
+  void findStartRates(const StepContext& context);
+  double liftStart(const StepContext& context);
+  double sweepStart(const StepContext& context, float momentum);
   void takePressures(bool byEquation);
   ForceLoop forceLoop(float* ux, float* uy);
   RateLoop rateLoop(const float* ux, const float* uy);
