@@ -74,8 +74,8 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
   linkTiles(*tiles_, links_);
   const TileGrid& tiles = *tiles_;
   for (FaceComponent* c : {&x, &y}) {
-    for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved}) tiles.clear(*field);
-    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->open, &c->known}) tiles.fit(*field);
+    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->change, &c->shift, &c->open, &c->solved, &c->known})
+      tiles.fit(*field);
   }
   tiles.fit(node);
   sumsOf_.assign(tiles.size() + 1, 0);
@@ -99,6 +99,8 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
     join(&TileSums::vSum, y.value.data() + at);
     join(&TileSums::node, node.data() + at);
     for (FaceComponent* c : {&x, &y}) {
+      for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved})
+        std::fill_n(field->data() + at, kCells, 0.0f);
       for (std::size_t k = at; k < at + kCells; ++k) {
         const bool any = c->weight[k] > 0.0f;
         c->value[k] = any ? c->value[k] / c->weight[k] : 0.0f;

@@ -80,9 +80,10 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
   linkTiles(*level.grid, level.links);
   const bool finest = &level == &levels_[0];
   const std::size_t places = finest ? ground.size() : level.grid->values();
-  for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
-    a->clear();
+  const std::array<AlignedArray<float>*, 3> empty{&level.r, &level.one, &level.two};
+  for (AlignedArray<float>* a : empty) {
     growTo(*a, places);
+    std::fill(a->begin() + level.grid->values(), a->end(), 0.0f);
   }
   for (AlignedArray<float>* a : {&level.ar, &level.diagonal, &level.inverse}) {
     growTo(*a, places);
@@ -93,6 +94,8 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
                            level.diagonal.data(), level.inverse.data()};
   parallelFor(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
     loops_->assemble(parts, level.sums.data(), begin + 1, end + 1);
+    for (AlignedArray<float>* a : empty)
+      std::fill_n(a->data() + (begin + 1) * TileGrid::kCells, (end - begin) * TileGrid::kCells, 0.0f);
   });
   level.coupled = sumOf(level) > 0.0;
   if (finest) addEdges();
