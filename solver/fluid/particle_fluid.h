@@ -70,6 +70,7 @@ class ParticleFluid : public FluidModel {
   /// what is in excess, by particle.
   void buildCoarse(const StepContext& context, const float* density);
   void solveCoarse(const float* excess);
+  void dropCoarse() { coarse_ = CoarsePressure(); }
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²

@@ -68,10 +68,7 @@ StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gra
 }
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  for (AlignedArray<float>* a :
-       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &least_, &share_, &sign_}) {
-    a->resize(pool.size());
-  }
+  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &least_, &share_, &sign_}) a->resize(pool.size());
   const bool fresh = soundSpeed_ == 0.0;
   findNear(context);
   findArrangement(context, nextExcess_.data(), diagonal_.data());
@@ -362,6 +359,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float); }
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 5 * excess_.capacity() * sizeof(float); }
 
 }  // namespace froude

@@ -22,12 +22,13 @@ constexpr double kLiftTolerance = 0.005;
 
 }  // namespace
 
-// To `smoothY_`: by how much the rates of the densities change in an acoustic step because the particles move on with
+// To `turning_`: by how much the rates of the densities change in an acoustic step because the particles move on with
 // the velocities that they have, −∇u:∇u; central differences along their ways. Of those at walls, which stand still in
 // it, 0.
 void Wcsph::findTurning(const StepContext& context) {
   const std::size_t n = grid_.size();
-  std::fill_n(smoothY_.begin(), n, 0.0f);
+  turning_.resize(n);
+  std::fill_n(turning_.begin(), n, 0.0f);
   if (!arrangement_.hasSurface()) return;  // nothing gives pressures their zero: the sweeps would run off
   const auto fastest = static_cast<float>(parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
     float most = 0.0f;
@@ -52,7 +53,7 @@ void Wcsph::findTurning(const StepContext& context) {
     latticeY_.swap(nextY_);
     for (std::size_t i = 0; i < n; ++i) {
       if (walls_.any() && walls_.lambda()[i] > 0.0f) continue;
-      smoothY_[i] += side * 0.5f * fastest / kProbe * excess_[i];
+      turning_[i] += side * 0.5f * fastest / kProbe * excess_[i];
     }
   }
 }
@@ -74,11 +75,16 @@ void Wcsph::findStartPressure(const StepContext& context) {
   // Else it starts from none, and bounces.
   const float compliance = found ? 1.0f / stiffness : 0.0f;
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) excess_[i] = found ? excess_[i] * compliance : 0.0f;
+    for (std::size_t i = begin; i < end; ++i) {
+      excess_[i] = found ? excess_[i] * compliance : 0.0f;
+      kappa_[i] = solvedX_[i] = solvedY_[i] = 0.0f;  // they served the sweeps
+    }
   });
   stiffness_ = stiffness;
   background_ = background;
   taken_ = Vec2(0.0, 0.0);
+  turning_ = AlignedArray<float>();
+  dropCoarse();
   limitStiffness();
 }
 
@@ -86,7 +92,7 @@ void Wcsph::startFromNothing(float step) {
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       share_[i] = step / std::max(diagonal_[i], kInnerDiagonal);
-      excess_[i] = smoothX_[i] = 0.0f;
+      excess_[i] = kappa_[i] = 0.0f;
     }
   });
 }
@@ -95,10 +101,10 @@ void Wcsph::startFromNothing(float step) {
 void Wcsph::findStartRates(const StepContext& context) {
   const std::size_t n = grid_.size();
   takePressures(false);
-  std::copy_n(fallX_.begin(), n, velocityX_.begin());
-  std::copy_n(fallY_.begin(), n, velocityY_.begin());
-  accelerate(context, forceLoop(velocityX_.data(), velocityY_.data()));
-  RateLoop loop = rateLoop(velocityX_.data(), velocityY_.data());
+  std::copy_n(fallX_.begin(), n, solvedX_.begin());
+  std::copy_n(fallY_.begin(), n, solvedY_.begin());
+  accelerate(context, forceLoop(solvedX_.data(), solvedY_.data()));
+  RateLoop loop = rateLoop(solvedX_.data(), solvedY_.data());
   loop.wallShare = 0.0f;
   compress(context, loop);
 }
@@ -106,13 +112,13 @@ void Wcsph::findStartRates(const StepContext& context) {
 // To `nextExcess_` the pressures before, to `excess_` those with what the rates that they leave ask for. Returns
 // Σ|gain|.
 double Wcsph::sweepStart(const StepContext& context, float momentum) {
-  AlignedArray<float>& last = smoothX_;
+  AlignedArray<float>& last = kappa_;
   findStartRates(context);
   return parallelSum(grid_.size(), [&](std::size_t begin, std::size_t end) {
     double part = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const float before = nextExcess_[i];
-      const float gain = std::max(least_[i], excess_[i] + share_[i] * smoothY_[i]) - before;
+      const float gain = std::max(least_[i], excess_[i] + share_[i] * turning_[i]) - before;
       excess_[i] = before + gain + momentum * (before - last[i]);
       part += static_cast<double>(std::abs(gain));
       last[i] = before;
@@ -123,12 +129,12 @@ double Wcsph::sweepStart(const StepContext& context, float momentum) {
 
 // Takes away what a coarse level sees of the rates; returns by how much of all pressures.
 double Wcsph::liftStart(const StepContext& context) {
-  AlignedArray<float>&last = smoothX_, &rates = velocityX_;
+  AlignedArray<float>&last = kappa_, &rates = solvedX_;
   const auto area = static_cast<float>(std::pow(def_.spacing / unit_, 2));
   findStartRates(context);
   parallelFor(grid_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      rates[i] = area * ((excess_[i] - nextExcess_[i]) / share_[i] + smoothY_[i]);
+      rates[i] = area * ((excess_[i] - nextExcess_[i]) / share_[i] + turning_[i]);
     }
   });
   solveCoarse(rates.data());

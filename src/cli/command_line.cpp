@@ -208,7 +208,10 @@ void addField(CLI::App& app, Typed& typed) {
   command.add_option("SHAPE", field.shape, "a shape: FILE.toml, SCENE.toml#BODY, FILE.csv or FILE.svg#ID")
       ->type_name("")
       ->required();
-  command.add_option("-o", field.output, "the picture to draw, .png or .svg; with --at a .csv instead of stdout")
+  command
+      .add_option("-o", field.output,
+                  "the picture to draw, .png or .svg, or a page to explore the field, .html; with --at a .csv instead "
+                  "of stdout")
       ->type_name("FILE");
   command.add_option("--at", field.points, "answer at these points: a .csv with x,y in each row, or - for stdin")
       ->type_name("POINTS.csv");
@@ -387,14 +390,20 @@ FieldRequest finishField(Typed& typed, const CLI::App& command) {
   if (points && field.points.empty()) throw UsageError("--at: the name of the table is empty");
   if (field.check && (points || command.count("-o") > 0)) throw UsageError("--check stands alone, without -o and --at");
   if (!field.check && !points && !picture)
-    throw UsageError("nothing is asked of the field; right is -o FILE.png, -o FILE.svg, --at POINTS.csv or --check");
+    throw UsageError(
+        "nothing is asked of the field; right is -o FILE.png, -o FILE.svg, -o FILE.html, --at POINTS.csv or --check");
   if (picture && !exporting::isPicture(field.output))
-    throw UsageError(fmt::format("-o {}: a picture is wanted, FILE.png or FILE.svg", field.output));
+    throw UsageError(
+        fmt::format("-o {}: a picture or a page is wanted, FILE.png, FILE.svg or FILE.html", field.output));
   if (points && !field.output.empty() && !field.output.ends_with(".csv"))
     throw UsageError(fmt::format("-o {}: with --at a table is written, FILE.csv", field.output));
   for (const char* option : {"--offset", "--show", "--width", "--band", "--cell"})
     if (!picture && command.count(option) > 0)
       throw UsageError(fmt::format("{} is for pictures, with -o FILE.png or FILE.svg", option));
+  const bool page = picture && field.output.ends_with(".html");
+  for (const char* option : {"--offset", "--show", "--width"})
+    if (page && command.count(option) > 0)
+      throw UsageError(fmt::format("{} is for pictures; a page has all layers, and curves at every distance", option));
   for (const char* option : {"--scale", "--tolerance"})
     if (command.count(option) > 0 && !scene::isDrawing(field.shape))
       throw UsageError(fmt::format("{} is for drawings, FILE.svg#ID; '{}' has its own metres", option, field.shape));

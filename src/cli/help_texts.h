@@ -78,6 +78,7 @@ Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanati
 
 inline constexpr std::string_view kFieldFooter = R"(Example:
   froude field scenes/shapes/gear.toml -o gear.png --offset 0.05 --offset -0.05
+  froude field scenes/shapes/gear.toml -o gear.html
   froude field scenes/mill.toml#wheel --at points.csv
   froude field scenes/drawings/harbour.svg#buoy --check
 

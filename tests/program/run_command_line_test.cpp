@@ -189,7 +189,7 @@ TEST(CommandLine, field_takes_all_its_options) {
 
 TEST(CommandLine, field_says_what_it_could_be_asked) {
   expectComplaint({"field", "a.toml"}, {"-o FILE.png", "--at POINTS.csv", "--check"});
-  expectComplaint({"field", "a.toml", "-o", "a.jpg"}, {"a.jpg", "FILE.png or FILE.svg"});
+  expectComplaint({"field", "a.toml", "-o", "a.jpg"}, {"a.jpg", "FILE.svg or FILE.html"});
   expectComplaint({"field", "a.toml", "-o", ".png"}, {".png"});
   expectComplaint({"field", "a.toml", "--at", "p.csv", "-o", "a.png"}, {"a.png", "FILE.csv"});
   expectComplaint({"field", "a.toml", "--at", "p.csv", "--offset", "1"}, {"--offset", "pictures"});
