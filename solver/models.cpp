@@ -181,12 +181,13 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
-  // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 583 bytes a particle
-  // for pbf, 635 for dfsph, 740 for wcsph, 890 for apic, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes
-  // each. State columns, undo copy, scratch, and at a checkpoint its image in memory.
-  constexpr std::size_t kBulletBytes = 240, kFieldBytes = 56'000'000;
+  // Peak resident memory of the program: dam_speed at 10,000 and 99,856 particles gives 405 bytes a particle for pbf
+  // (to 0.35 s), 513 for dfsph (0.03 s), 550 for wcsph (0.1 s), 637 for apic (2 s), and 57 MB besides; 20,000 and
+  // 200,000 bullets gave 238 bytes each. State columns, undo copy, scratch, seeds; the image of a checkpoint in memory
+  // takes the place of the undo copy.
+  constexpr std::size_t kBulletBytes = 240, kFieldBytes = 57'000'000;
   const std::string model = def.fluid ? def.fluid->model : "";
-  const std::size_t fluidBytes = model == "apic" ? 890 : model == "wcsph" ? 740 : model == "dfsph" ? 640 : 590;
+  const std::size_t fluidBytes = model == "apic" ? 640 : model == "wcsph" ? 550 : model == "dfsph" ? 510 : 405;
   return kFieldBytes + fluidBytes * fluidParticles + kBulletBytes * bullets;
 }
 
