@@ -1,6 +1,9 @@
 #include "validation/validation.h"
 
 #include <algorithm>
+#include <filesystem>
+
+#include "run/machine.h"
 
 namespace froude::validation {
 namespace {
@@ -19,12 +22,43 @@ Registered::Registered(Case entry) {
   cases.insert(place, std::move(entry));
 }
 
-std::span<const Case> allCases() { return registered(); }
-
-std::string scenePath(const std::string& name) {
-  return std::string(FROUDE_VALIDATION_ROOT) + "/scenes/" + name + ".toml";
+const char* flowName(FlowKind flow) {
+  switch (flow) {
+    case FlowKind::None:
+      break;
+    case FlowKind::Splash:
+      return "splash";
+    case FlowKind::Surface:
+      return "free surface";
+    case FlowKind::Confined:
+      return "confined";
+    case FlowKind::AtRest:
+      return "at rest";
+    case FlowKind::Soft:
+      return "soft";
+    case FlowKind::Bullets:
+      return "bullets";
+  }
+  return "none";
 }
 
-std::string dataPath(const std::string& file) { return std::string(FROUDE_VALIDATION_ROOT) + "/tests/data/" + file; }
+std::span<const Case> allCases() { return registered(); }
+
+namespace {
+
+/// Beside an installed program, else the source tree that this was built from.
+const std::filesystem::path& root() {
+  static const std::filesystem::path kRoot = [] {
+    const auto beside = std::filesystem::path(run::programPath()).parent_path().parent_path() / FROUDE_SHARED_FOLDER;
+    return std::filesystem::exists(beside / "scenes") ? beside : std::filesystem::path(FROUDE_VALIDATION_ROOT);
+  }();
+  return kRoot;
+}
+
+}  // namespace
+
+std::string scenePath(const std::string& name) { return root() / "scenes" / (name + ".toml"); }
+
+std::string dataPath(const std::string& file) { return root() / "tests" / "data" / file; }
 
 }  // namespace froude::validation

@@ -19,8 +19,8 @@ constexpr float kLone = 0.5f;       // density below which nothing pulls at a pa
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
-// Of the change of ρ' in an acoustic step, added to ρ' where a surface is tense: a drop that has drawn itself round would
-// ring for long.
+// Of the change of ρ' in an acoustic step, added to ρ' where a surface is tense: a drop that has drawn itself round
+// would ring for long.
 constexpr float kDamping = 0.5f;
 constexpr int kMostSteps = 64;     // acoustic ones a sub-step
 constexpr float kStiffest = 1.2f;  // diagonal of div grad from which a fluid is made softer

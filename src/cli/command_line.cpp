@@ -20,8 +20,8 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 9> kCommands{"run",    "check",  "explain",    "field", "batch",
-                                                    "resume", "doctor", "completion", "man"};
+constexpr std::array<std::string_view, 10> kCommands{"run",    "check", "explain", "field",      "batch",
+                                                     "resume", "chart", "doctor",  "completion", "man"};
 constexpr int kMostThreads = 1024;
 constexpr int kMostTasks = 1000000;
 constexpr double kMostMetres = 1e9;
@@ -65,9 +65,10 @@ struct Typed {
   FieldRequest field;
   DoctorRequest doctor;
   study::BatchOptions batch;
+  plan::ChartOptions chart;
   DescribeRequest describe;
   std::vector<std::string> sets, sweeps;
-  std::string accuracy, frames, simd, layers, collect;
+  std::string accuracy, frames, simd, layers, collect, cases, models;
   double until = 0.0;
 };
 
@@ -133,6 +134,24 @@ void addBatch(CLI::App& app, Typed& typed) {
   addSceneOptions(command, typed);
   addCommonOptions(command, batch.session, typed);
   command.footer(std::string(kBatchFooter));
+}
+
+void addChart(CLI::App& app, Typed& typed) {
+  CLI::App& command =
+      *app.add_subcommand("chart", "measure speed against accuracy in every validation case, and draw it");
+  plan::ChartOptions& chart = typed.chart;
+  command.add_flag("--quick", chart.quick, "coarse spacings and quick points only, within three minutes");
+  command.add_option("-o", chart.folder, "the folder of points and pictures; default: out/chart")->type_name("DIR");
+  command.add_option("--cases", typed.cases, "these cases of docs/validation.md; default: all that stand on the chart")
+      ->type_name("LIST");
+  command.add_option("--models", typed.models, "these models; default: all")->type_name("LIST");
+  command.add_option("--limit", chart.limit, "give a point up whose steps take longer; default: 120")
+      ->check(seconds())
+      ->type_name("SECONDS");
+  command.add_option("--threads", chart.threads, "threads to compute with; default: all usable cores")
+      ->check(wholeNumber(1, kMostThreads))
+      ->type_name("N");
+  command.footer(std::string(kChartFooter));
 }
 
 void addDescriptions(CLI::App& app, Typed& typed) {
@@ -368,6 +387,15 @@ FieldRequest finishField(Typed& typed, const CLI::App& command) {
   return std::move(field);
 }
 
+plan::ChartOptions finishChart(Typed& typed, const CLI::App& command) {
+  if (typed.chart.folder.empty()) throw UsageError("-o: the name of the folder is empty");
+  for (const auto& [option, text, list] : {std::tuple{"--cases", &typed.cases, &typed.chart.cases},
+                                           std::tuple{"--models", &typed.models, &typed.chart.models}}) {
+    if (command.count(option) > 0) *list = CLI::detail::split(*text, ',');
+  }
+  return std::move(typed.chart);
+}
+
 Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
   const std::string& name = command.get_name();
   if (name == "run") return finishRun(typed, command, arguments);
@@ -379,6 +407,7 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   if (name == "check") return typed.check;
   if (name == "explain") return typed.explain;
   if (name == "field") return finishField(typed, command);
+  if (name == "chart") return finishChart(typed, command);
   if (name == "completion" || name == "man") {
     if (name == "completion") completionScript({}, typed.describe.shell);
     return typed.describe;
@@ -400,6 +429,7 @@ void build(CLI::App& app, Typed& typed) {
   addField(app, typed);
   addBatch(app, typed);
   addResume(app, typed);
+  addChart(app, typed);
   addDescriptions(app, typed);
   app.footer(
       "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"

@@ -25,6 +25,16 @@ Exit codes: 0 all runs are done; 1 internal error; 2 the command line, a batch f
 written; 4 the table cannot be written; 5 some runs are not done, the table says why; 130 SIGINT and 143 SIGTERM, after
 a checkpoint of every run at work.)";
 
+inline constexpr std::string_view kChartFooter = R"(Examples:
+  froude chart --quick
+  froude chart -o out/dams --cases dam,martin_moyce --models pbf,apic
+
+Each point is one run: a case, a model, a spacing, a step. DIR/points.csv has a line for each, chart.svg and chart.png show time
+against error. What was measured by this build on this machine is not measured again, so a chart may be stopped and goes on.
+The whole of it takes hours. The last line on stdout is DIR. docs/chart.md says what is drawn.
+Exit codes: 0 done; 1 internal error; 2 the command line is wrong; 4 input or output failed;
+130 SIGINT and 143 SIGTERM, with what was measured drawn.)";
+
 inline constexpr std::string_view kCompletionFooter = R"(Example:
   froude completion bash > ~/.local/share/bash-completion/completions/froude
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "export/field_painter.h"
+#include "plan/chart_options.h"
 #include "run/run.h"
 #include "scene/shape_argument.h"
 #include "study/batch.h"
@@ -42,7 +43,7 @@ struct DoctorRequest {
 };
 
 using Request = std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest,
-                             FieldRequest, study::BatchOptions, DescribeRequest, DoctorRequest>;
+                             FieldRequest, study::BatchOptions, plan::ChartOptions, DescribeRequest, DoctorRequest>;
 
 /// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
 /// right.

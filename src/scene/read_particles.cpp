@@ -77,6 +77,29 @@ void readCompressible(TableReader& model, CompressibleDef& def) {
 
 constexpr double kAlmostInviscid = 1e-5;  // [m²/s] that apic may leave out
 
+void refuseWhatApicLacks(TableReader& model, const FluidDef& def) {
+  if (def.surfaceTension > 0.0) {
+    model.fail("fluid",
+               "apic has no surface tension in this version, right are pbf, dfsph and wcsph, or surface_tension = 0");
+  }
+  if (def.viscosity > kAlmostInviscid) {
+    model.fail("fluid",
+               "apic has no viscosity in this version, right are pbf, dfsph and wcsph, or a viscosity of at "
+               "most 1e-5 m²/s, which it leaves out");
+  }
+  for (const char* key : {"sweeps", "viscosity_solver"}) {
+    if (model.has(key)) model.fail(key, "a key of particle methods, right is to leave it out");
+  }
+}
+
+void readSweeps(TableReader& model, FluidDef& def) {
+  if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
+  const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
+  def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
+                        : solver == "explicit" ? ViscositySolver::Explicit
+                                               : ViscositySolver::Implicit;
+}
+
 void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) {
   std::vector<std::string> here, absent;
   for (const char* name : {"pbf", "dfsph", "wcsph", "apic"})
@@ -88,26 +111,12 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   } else {
     model.optionalNumber("spacing", spacing);
   }
-  if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
   const double most = def.model == "apic" ? 7.0 : 1.0;
   if (const auto courant = model.optionalNumber("courant", Range::between(0.01, most))) def.courant = *courant;
-  const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
-  def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
-                        : solver == "explicit" ? ViscositySolver::Explicit
-                                               : ViscositySolver::Implicit;
   if (def.model == "apic") {
-    if (def.surfaceTension > 0.0) {
-      model.fail("fluid",
-                 "apic has no surface tension in this version, right are pbf, dfsph and wcsph, or surface_tension = 0");
-    }
-    if (def.viscosity > kAlmostInviscid) {
-      model.fail("fluid",
-                 "apic has no viscosity in this version, right are pbf, dfsph and wcsph, or a viscosity of at "
-                 "most 1e-5 m²/s, which it leaves out");
-    }
-    for (const char* key : {"sweeps", "viscosity_solver"}) {
-      if (model.has(key)) model.fail(key, "a key of particle methods, right is to leave it out");
-    }
+    refuseWhatApicLacks(model, def);
+  } else {
+    readSweeps(model, def);
   }
   if (def.model == "wcsph") {
     readCompressible(model, def.compressible);

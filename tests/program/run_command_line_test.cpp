@@ -148,14 +148,16 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 }
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
+  for (const char* command :
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "doctor", "completion", "man"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
     EXPECT_NE(help.find("Example"), std::string::npos) << help;
     EXPECT_NE(help.find(":\n  froude " + std::string(command)), std::string::npos) << help;
     EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
+  for (const char* command :
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "doctor", "completion", "man"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }

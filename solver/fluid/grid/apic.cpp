@@ -68,7 +68,7 @@ void Apic::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger
   loadParticles(pool);
   findCarried(context, pool);
   cutCells(context);
-  faces_.collect(particles_, columns(), transferLoops(context.simd));
+  faces_.collect(particles_, columns(), context.simd);
   const Vec2 fall = addGravity(context, pool);
   stats.gravityImpulse += fall;
   faces_.extrapolate(1);
@@ -196,7 +196,8 @@ void Apic::spreadChange() {
   for (FaceComponent* c : {&faces_.x, &faces_.y}) {
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t place = (begin + 1) * kCells; place < (end + 1) * kCells; ++place) {
-        if (c->solved[place] == 0.0f) c->value[place] += c->known[place] * c->change[place];
+        const float more = c->known[place] * c->change[place];
+        c->value[place] += c->solved[place] == 0.0f ? more : 0.0f;
       }
     });
   }
@@ -246,17 +247,21 @@ void Apic::takePressure(const StepContext& context, ParticlePool& pool) {
       tiles.loadHalo(faces_.x.solved.data(), t, solvedX);
       tiles.loadHalo(faces_.y.solved.data(), t, solvedY);
       for (std::int32_t j = 0; j < kTileSide; ++j) {
+        std::array<float, kTileSide> alongX, alongY;
+        auto means = [&](const TileHalo& change, const TileHalo& solved, int di, int dj, float* to) {
+          const float *here = solved.row(j), *there = solved.row(j + dj) + di;
+          const float *own = change.row(j), *next = change.row(j + dj) + di;
+          for (std::int32_t i = 0; i < kTileSide; ++i) {
+            const float count = here[i] + there[i], sum = here[i] * own[i] + there[i] * next[i];
+            to[i] = -size * rate * (count > 0.0f ? sum / (count > 0.0f ? count : 1.0f) : 0.0f);
+          }
+        };
+        means(changeX, solvedX, 1, 0, alongX.data());
+        means(changeY, solvedY, 0, 1, alongY.data());
         for (std::int32_t i = 0; i < kTileSide; ++i) {
           const std::int32_t c = j * kTileSide + i;
           if (start[c] == start[c + 1]) continue;
-          auto mean = [&](const TileHalo& change, const TileHalo& solved, int di, int dj) {
-            const float count = solved.value(i, j) + solved.value(i + di, j + dj);
-            const float sum =
-                solved.value(i, j) * change.value(i, j) + solved.value(i + di, j + dj) * change.value(i + di, j + dj);
-            return count > 0.0f ? sum / count : 0.0f;
-          };
-          const float gx = -size * rate * mean(changeX, solvedX, 1, 0),
-                      gy = -size * rate * mean(changeY, solvedY, 0, 1);
+          const float gx = alongX[static_cast<std::size_t>(i)], gy = alongY[static_cast<std::size_t>(i)];
           const float base = unit * q[t * kCells + static_cast<std::size_t>(c)];
           const auto middleX = static_cast<float>(i) + 0.5f, middleY = static_cast<float>(j) + 0.5f;
           for (std::uint32_t k = start[c]; k < start[c + 1]; ++k) {

@@ -116,7 +116,10 @@ void Apic::meetWalls(const StepContext& context, ParticlePool& pool, ImpulseLedg
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t k) {
       const Vec2 at(x[k], y[k]), way = size * Vec2(static_cast<double>(dx_[k]), static_cast<double>(dy_[k]));
-      if (context.obstacles.freeDistance(at, point.filter) > way.norm()) return;
+      // What is free around its start, and around its end: most go along a wall, not into it.
+      const double length = way.norm(), free = context.obstacles.freeDistance(at, point.filter);
+      if (free > length) return;
+      if (free > 0.0 && free + context.obstacles.clearance(at + way) > length) return;
       PathResult path;
       followPath(context.obstacles, at, way / dt, dt, point, path);
       if (path.contacts > 0) {

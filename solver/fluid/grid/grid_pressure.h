@@ -52,13 +52,15 @@ class GridPressure {
   };
   void findOpenings(FaceField& faces);
   void fillTile(std::size_t t, FaceField& faces);
+  void listCutCells();
   void findDensity(double full, const FaceField& faces);
   void findFluid(const FaceField& faces);
-  void findSurface(const FaceField& faces);
+  void findSurface(FaceField& faces);
+  void groundSurface(const FaceField& faces);
+  void findExcess(std::size_t t);
   void findDivergence(const StepContext& context, const FaceField& faces);
-  /// visit(component 0 or 1, place, −(κ_cell − κ_left) as the free surface lets it act) for every face that it acts on.
-  template <typename Visit>
-  void forEachJump(const AlignedArray<float>& kappa, Visit&& visit) const;
+  void findJumps(const AlignedArray<float>& kappa, float speed, const float* solvedX, const float* solvedY,
+                 float* changeX, float* changeY) const;
 
   CutGrid grid_;
   const CutCells* cuts_ = nullptr;
@@ -75,6 +77,8 @@ class GridPressure {
   AlignedArray<float> density_;          // by what particles would fill
   AlignedArray<float> steepX_, steepY_;  // 1, or at a free surface 1/(how far it is from the fluid's cell)
   std::vector<Listed> listed_;           // cut cells of the tiles
+  std::vector<std::uint8_t> wet_;        // by tile: holds cells of fluid
+  std::vector<std::uint8_t> partial_;    // by tile: a cell in it or in a tile beside it is open in part
 };
 
 template <typename Visit>

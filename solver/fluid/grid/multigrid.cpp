@@ -46,19 +46,6 @@ double sumOf(const GridLevel& level) {
 
 std::int32_t halved(std::int32_t period) { return (period + 1) / 2; }
 
-void linkTiles(GridLevel& level) {
-  const TileGrid& grid = *level.grid;
-  level.links.resize(level.tiles());
-  constexpr auto kCells = static_cast<std::uint32_t>(TileGrid::kCells);
-  for (std::size_t t = 1; t < level.tiles(); ++t) {
-    const Tile& tile = grid.tile(t);
-    const auto lane = static_cast<std::uint32_t>(grid.tile(tile.left).columns - 1);
-    const auto row = static_cast<std::uint32_t>(grid.tile(tile.down).rows - 1);
-    level.links[t] = {tile.left * kCells + lane, tile.right * kCells, tile.down * kCells + 16 * row,
-                      tile.up * kCells,          tile.columns - 1,    tile.rows};
-  }
-}
-
 }  // namespace
 
 float Multigrid::firstWeight(std::size_t level) const { return level + 1 < used_ ? weightsOf(level)[0] : 1.0f; }
@@ -81,7 +68,7 @@ void Multigrid::build(const TileGrid& grid, const PressureCoefficients& coeffici
 // The diagonal, and what the loops need beside it.
 void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const AlignedArray<float>& ay,
                        const AlignedArray<float>& ground) {
-  linkTiles(level);
+  linkTiles(*level.grid, level.links);
   const bool finest = &level == &levels_[0];
   const std::size_t places = finest ? ground.size() : level.grid->values();
   for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
