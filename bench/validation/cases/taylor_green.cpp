@@ -56,7 +56,9 @@ const Registered kPeriodic1000{
      .every = kReadEvery,
      .full = {{0.04, 0.02, 0.01}, {{"fluid.viscosity", "0.001"}, {"duration", "14.58129"}}},
      .quick = {{0.04}, {{"fluid.viscosity", "0.001"}, {"duration", "0.3"}}},
-     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); }}};
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); },
+     .flow = FlowKind::Confined,
+     .norm = {"velocity"}}};
 
 const Registered kBox{
     {.name = "taylor_green_box",
