@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include <froude/base/assert.h>
+#include "plan/chart_page.h"
 #include "plan/diagram.h"
 #include "run/atomic_file.h"
 #include "run/exit_codes.h"
@@ -73,6 +74,7 @@ void draw(const std::string& folder, const std::string& file) {
   const std::vector<plan::Panel> panels = plan::panels(table.points);
   for (const char* name : {"/chart.svg", "/chart.png"})
     run::writeWholeFile(folder + name, plan::drawChart(folder + name, panels, plan::captionOf(table)));
+  plan::writeChartPage(folder + "/index.html", panels, plan::captionOf(table));
 }
 
 std::string line(const plan::Point& p) {

@@ -27,8 +27,8 @@ std::vector<Task> chartTasks(const plan::ChartOptions& options);
 /// Runs it; `stop` is asked between sub-steps.
 plan::Point measure(const Task& task, double limit, const std::function<bool()>& stop);
 
-/// `froude chart`: measures what is not yet in the folder's points.csv, then draws chart.svg and chart.png. A line a
-/// point on stderr, the folder as the last line on stdout. Returns the exit code.
+/// `froude chart`: measures what is not yet in the folder's points.csv, then draws chart.svg, chart.png and
+/// index.html. A line a point on stderr, the folder as the last line on stdout. Returns the exit code.
 int chartCommand(const plan::ChartOptions& options);
 
 }  // namespace froude::validation

@@ -1,9 +1,8 @@
 #include "validation/validation.h"
 
 #include <algorithm>
-#include <filesystem>
 
-#include "run/machine.h"
+#include "run/shipped.h"
 
 namespace froude::validation {
 namespace {
@@ -44,21 +43,8 @@ const char* flowName(FlowKind flow) {
 
 std::span<const Case> allCases() { return registered(); }
 
-namespace {
+std::string scenePath(const std::string& name) { return run::shippedFile("scenes/" + name + ".toml"); }
 
-/// Beside an installed program, else the source tree that this was built from.
-const std::filesystem::path& root() {
-  static const std::filesystem::path kRoot = [] {
-    const auto beside = std::filesystem::path(run::programPath()).parent_path().parent_path() / FROUDE_SHARED_FOLDER;
-    return std::filesystem::exists(beside / "scenes") ? beside : std::filesystem::path(FROUDE_VALIDATION_ROOT);
-  }();
-  return kRoot;
-}
-
-}  // namespace
-
-std::string scenePath(const std::string& name) { return root() / "scenes" / (name + ".toml"); }
-
-std::string dataPath(const std::string& file) { return root() / "tests" / "data" / file; }
+std::string dataPath(const std::string& file) { return run::shippedFile("tests/data/" + file); }
 
 }  // namespace froude::validation

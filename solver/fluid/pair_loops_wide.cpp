@@ -159,7 +159,8 @@ void momentsOf(const PairFrame& frame, const MomentLoop& loop, std::size_t begin
         storeSome(hn::Mul(second, sums[4]), loop.moment.xx + i, count);
         storeSome(hn::Mul(second, sums[5]), loop.moment.xy + i, count);
         storeSome(hn::Mul(second, sums[6]), loop.moment.yy + i, count);
-      });
+      },
+      NoFold(), hn::IfThenElseZero(hn::FirstN(f, 1), Kernel::shape(hn::Set(f, 1.0f))));
 }
 
 void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
@@ -309,6 +310,43 @@ HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>&
   return excess;
 }
 
+// Where all particles of a cell have one B, (uᵢ − uⱼ)·B∇W − diffusion·slope (aᵢ + aⱼ)·∇W is (vᵢ − wⱼ)·∇W with v = Bu −
+// diffusion·slope a and w = Bu + diffusion·slope a, found once a candidate and not once a pair.
+struct RateFold {
+  static constexpr bool kFolds = true;
+  const RateLoop& loop;
+
+  HWY_INLINE bool operator()(const CellRuns& cell, UsualCell<5>& c, std::uint32_t vectors, Owners& owners) const {
+    const Matrices<const float>& b = loop.correction;
+    if (!sameInCell(b.xx, cell) || !sameInCell(b.xy, cell) || !sameInCell(b.yy, cell)) return false;
+    const F f;
+    const VF xx = hn::Set(f, b.xx[cell.first]), xy = hn::Set(f, b.xy[cell.first]), yy = hn::Set(f, b.yy[cell.first]);
+    const VF diffusion = hn::Set(f, 0.5f * loop.diffusion), slope = hn::Set(f, 0.5f * loop.diffusion * loop.slope);
+    HWY_UNROLL(16)
+    for (std::uint32_t v = 0; v < vectors; ++v) {
+      const VF ux = c.value[0][v], uy = c.value[1][v];
+      c.value[0][v] = hn::MulAdd(slope, c.value[3][v], hn::MulAdd(xx, ux, hn::Mul(xy, uy)));
+      c.value[1][v] = hn::MulAdd(slope, c.value[4][v], hn::MulAdd(xy, ux, hn::Mul(yy, uy)));
+      c.value[2][v] = hn::Mul(diffusion, c.value[2][v]);
+    }
+    for (std::uint32_t k = 0; k < cell.last - cell.first; k += kLanes) {
+      const std::uint32_t i = cell.first + k;
+      const VF ux = hn::LoadU(f, loop.ux + i), uy = hn::LoadU(f, loop.uy + i);
+      const VF ax = hn::LoadU(f, loop.ax + i), ay = hn::LoadU(f, loop.ay + i);
+      hn::Store(hn::NegMulAdd(slope, ax, hn::MulAdd(xx, ux, hn::Mul(xy, uy))), f, owners.value[0] + k);
+      hn::Store(hn::NegMulAdd(slope, ay, hn::MulAdd(xy, ux, hn::Mul(yy, uy))), f, owners.value[1] + k);
+      hn::Store(hn::Mul(diffusion, hn::LoadU(f, loop.excess + i)), f, owners.value[2] + k);
+    }
+    return true;
+  }
+
+  static HWY_INLINE void add3(VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) {
+    const VF jump = hn::Sub(own[2], other[2]);
+    const VF change = hn::MulAdd(hn::Sub(own[0], other[0]), dx, hn::MulAdd(hn::Sub(own[1], other[1]), dy, jump));
+    sums[0] = hn::MulAdd(WendlandC2::slope(m), change, sums[0]);
+  }
+};
+
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
   const Matrices<const float>& b = loop.correction;
@@ -338,7 +376,8 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
         if (loop.newX == nullptr) return;
         storeMoved(frame.x + i, loadSome(loop.ux + i, count), loop.newX + i, count);
         storeMoved(frame.y + i, loadSome(loop.uy + i, count), loop.newY + i, count);
-      });
+      },
+      RateFold{loop});
 }
 
 void near(const PairFrame& frame, std::uint8_t* rows, std::size_t begin, std::size_t end) {

@@ -291,12 +291,20 @@ void ParticleFluid::findWallGain(const StepContext& context, double time) {
   });
 }
 
+void ParticleFluid::buildCoarse(const StepContext& context, const float* density) {
+  coarse_.build(context.obstacles, filter(), grid_, occupied_, density);
+}
+
+void ParticleFluid::solveCoarse(const float* excess) {
+  const std::size_t n = grid_.size();
+  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, excess, change_.data());
+}
+
 // To `change_`, from the excess of density of each particle.
 void ParticleFluid::liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess) {
-  const std::size_t n = pool.size();
-  coarse_.build(context.obstacles, filter(), grid_, occupied_, pool.column(density_).data());
-  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, excess, change_.data());
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+  buildCoarse(context, pool.column(density_).data());
+  solveCoarse(excess);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) change_[i] = std::max(0.0f, change_[i]);
   });
 }

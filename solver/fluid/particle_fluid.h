@@ -66,6 +66,11 @@ class ParticleFluid : public FluidModel {
   void findArrangement(const StepContext& context, float* density, float* squares);
   /// For methods that use it: fills `wallGain_` with what the walls' own motion adds to λ in a time.
   void findWallGain(const StepContext& context, double time);
+  /// The coarse level of a pressure solve: which cells are full, by density; then, to `change_`, the κ that takes away
+  /// what is in excess, by particle.
+  void buildCoarse(const StepContext& context, const float* density);
+  void solveCoarse(const float* excess);
+  void dropCoarse() { coarse_ = CoarsePressure(); }
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²

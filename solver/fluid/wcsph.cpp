@@ -29,11 +29,6 @@ constexpr double kReturn = 1e-3, kMostReturn = 0.1;
 // Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
 // fastest in units, at most kMostWay.
 constexpr float kEven = 1.0f, kStray = 0.07f, kMostWay = 0.3f;
-// The start pressure: sweeps at most, times √N; their step, halved where they diverge; errors over the first one.
-constexpr double kStartSweeps = 40.0, kStartTolerance = 0.02, kDiverged = 1e2;
-constexpr float kStartStep = 0.6f, kLeastStartStep = 0.05f;
-constexpr float kProbe = 0.03f;         // way of the fastest along which its change of the rates is taken [units]
-constexpr float kInnerDiagonal = 0.5f;  // half of the largest eigenvalue of div grad inside a fluid
 
 // In [−1, 1)², from a particle's place in the order of the cells and the time: the same on any number of threads,
 // straight through or resumed.
@@ -77,10 +72,7 @@ StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gra
 }
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  for (AlignedArray<float>* a :
-       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &least_, &share_, &sign_}) {
-    a->resize(pool.size());
-  }
+  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &least_, &share_, &sign_}) a->resize(pool.size());
   const bool fresh = soundSpeed_ == 0.0;
   findNear(context);
   findArrangement(context, nextExcess_.data(), diagonal_.data());
@@ -203,98 +195,6 @@ void Wcsph::findDiagonal() {
       diagonal_[i] = x * x + y * y + 0.5f * square * volume * volume * diagonal_[i];
     }
   });
-}
-
-// To `smoothY_`: by how much the rates of the densities change in an acoustic step because the particles move on with
-// the velocities that they have, −∇u:∇u; central differences along their ways. Of those at walls, which stand still in
-// it, 0.
-void Wcsph::findTurning(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  std::fill_n(smoothY_.begin(), n, 0.0f);
-  if (!arrangement_.hasSurface()) return;  // nothing gives pressures their zero: the sweeps would run off
-  const auto fastest = static_cast<float>(parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
-    float most = 0.0f;
-    for (std::size_t i = begin; i < end; ++i) most = std::max(most, std::hypot(moveX_[i], moveY_[i]));
-    return static_cast<double>(most);
-  }));
-  if (fastest == 0.0f) return;
-  std::fill_n(share_.begin(), n, 1.0f);
-  for (const float side : {1.0f, -1.0f}) {
-    const float way = side * kProbe / fastest * static_cast<float>(lattice::kUnitsPerSpacing);
-    for (std::size_t i = 0; i < n; ++i) {
-      nextX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(way * moveX_[i])));
-      nextY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(way * moveY_[i])));
-      excess_[i] = 0.0f;
-    }
-    latticeX_.swap(nextX_);
-    latticeY_.swap(nextY_);
-    RateLoop loop = rateLoop(moveX_.data(), moveY_.data());
-    loop.wallShare = 0.0f;
-    compress(context, loop);
-    latticeX_.swap(nextX_);
-    latticeY_.swap(nextY_);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (walls_.any() && walls_.lambda()[i] > 0.0f) continue;
-      smoothY_[i] += side * 0.5f * fastest / kProbe * excess_[i];
-    }
-  }
-}
-
-// The pressures that a fluid has which is let go: those that keep the rates of its densities as they are. Without them
-// a tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
-void Wcsph::findStartPressure(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  const float stiffness = std::exchange(stiffness_, 1.0f), background = std::exchange(background_, 0.0f);
-  findTurning(context);
-  bool found = false;
-  for (float step = kStartStep; !found && step > kLeastStartStep; step *= 0.5f) {
-    for (std::size_t i = 0; i < n; ++i) share_[i] = step / std::max(diagonal_[i], kInnerDiagonal);
-    found = sweepStartPressure(context);
-  }
-  // Else it starts from none, and bounces.
-  const float compliance = found ? 1.0f / stiffness : 0.0f;
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) excess_[i] = found ? excess_[i] * compliance : 0.0f;
-  });
-  stiffness_ = stiffness;
-  background_ = background;
-  taken_ = Vec2(0.0, 0.0);
-  limitStiffness();
-}
-
-// False where it diverges.
-bool Wcsph::sweepStartPressure(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  const double rows = std::sqrt(static_cast<double>(n));
-  const auto momentum = static_cast<float>(std::pow((rows - 1.0) / (rows + 1.0), 2));
-  AlignedArray<float>& last = smoothX_;
-  std::fill_n(last.begin(), n, 0.0f);
-  std::fill_n(excess_.begin(), n, 0.0f);
-  double first = 0.0;
-  for (int sweep = 0; sweep < static_cast<int>(kStartSweeps * rows); ++sweep) {
-    takePressures(false);
-    std::copy_n(fallX_.begin(), n, velocityX_.begin());
-    std::copy_n(fallY_.begin(), n, velocityY_.begin());
-    accelerate(context, forceLoop(velocityX_.data(), velocityY_.data()));
-    RateLoop loop = rateLoop(velocityX_.data(), velocityY_.data());
-    loop.wallShare = 0.0f;
-    compress(context, loop);
-    const double error = parallelSum(n, [&](std::size_t begin, std::size_t end) {
-      double part = 0.0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const float before = nextExcess_[i];
-        const float gain = std::max(least_[i], excess_[i] + share_[i] * smoothY_[i]) - before;
-        excess_[i] = before + gain + momentum * (before - last[i]);
-        part += static_cast<double>(std::abs(gain));
-        last[i] = before;
-      }
-      return part;
-    });
-    if (sweep == 0) first = error;
-    if (error <= kStartTolerance * first) return true;
-    if (!(error < kDiverged * first)) return false;
-  }
-  return true;
 }
 
 // Where walls make a corner, pressures push harder and densities gain more: there the fluid is softer, or the acoustic
@@ -484,6 +384,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float); }
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 5 * excess_.capacity() * sizeof(float); }
 
 }  // namespace froude

@@ -39,6 +39,7 @@ struct Dispatch {
   int operator()(const study::BatchOptions& r) const { return study::runBatch(r); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
   int operator()(const FieldRequest& r) const { return fieldCommand(r); }
+  int operator()(const plan::ScalingOptions& r) const { return plan::scalingCommand(r); }
   int operator()(const DescribeRequest& r) const {
     const ProgramText program = describeProgram();
     fmt::print("{}", r.shell.empty() ? manualPage(program) : completionScript(program, r.shell));

@@ -11,6 +11,7 @@
 #include <froude/fields/offset_curve.h>
 
 #include "export/field_contours.h"
+#include "export/field_page.h"
 #include "export/field_panels.h"
 #include "export/frames.h"
 #include "export/sketch.h"
@@ -166,12 +167,18 @@ class Painter {
 
 }  // namespace
 
-bool isPicture(const std::string& file) { return endsWith(file, ".png") || endsWith(file, ".svg"); }
+bool isPicture(const std::string& file) {
+  return endsWith(file, ".png") || endsWith(file, ".svg") || endsWith(file, ".html");
+}
 
 std::vector<std::string> drawField(const std::string& file, const Polygon& polygon, const std::string& title,
                                    const FieldPicture& picture) {
   const double usual = kShare * polygon.bounds().size().maxCoeff();
   const DistanceField field(polygon, picture.band > 0.0 ? picture.band : usual, picture.cell);
+  if (endsWith(file, ".html")) {
+    writeFieldPage(file, field, title);
+    return {};
+  }
   // Cells as they were asked for are shown. Millions of pixels are not answered by them: far too many or too large
   // ones would take hours, and the answers are exact whatever the cells.
   std::optional<DistanceField> suited;

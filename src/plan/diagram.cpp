@@ -4,38 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "export/sketch.h"
+#include "plan/plot.h"
 
 namespace froude::plan {
 namespace {
-
-using exporting::Color;
 
 // The sheet [pixels].
 constexpr int kColumns = 3, kPanelWidth = 460, kPanelHeight = 360, kHeader = 104, kMargin = 20;
 constexpr double kLeft = 66.0, kRight = 14.0, kTop = 34.0, kBottom = 46.0;  // of a panel, around its axes
 constexpr double kLeastError = 1e-7;                                        // an error below it is drawn there
-constexpr double kDark = 0.16, kPale = 0.88;
+constexpr double kDark = 0.16;
 
-/// Told apart by people with every common colour blindness (Okabe & Ito 2008), and by their marks.
-constexpr std::array<Color, 8> kColors{{{0, 114, 178},
-                                        {213, 94, 0},
-                                        {0, 158, 115},
-                                        {204, 121, 167},
-                                        {230, 159, 0},
-                                        {86, 180, 233},
-                                        {90, 90, 90},
-                                        {120, 60, 20}}};
-
-struct Style {
-  Color color;
-  int mark = 0;
-};
 using Styles = std::map<std::string, Style>;
 
 Styles stylesOf(std::span<const Panel> panels) {
@@ -45,26 +29,10 @@ Styles stylesOf(std::span<const Panel> panels) {
   Styles styles;
   int next = 0;
   for (const std::string& model : models) {
-    styles[model] = {kColors[static_cast<std::size_t>(next) % kColors.size()], next % 4};
+    styles[model] = styleOf(static_cast<std::size_t>(next));
     ++next;
   }
   return styles;
-}
-
-/// One logarithmic axis, in whole decades.
-struct Axis {
-  double low = 0.0, high = 0.0;  // decades
-  double from = 0.0, to = 0.0;   // pixels
-  double at(double value) const { return from + (std::log10(value) - low) / (high - low) * (to - from); }
-};
-
-Axis axisOver(const std::vector<double>& values, double from, double to) {
-  Axis axis{-1.0, 1.0, from, to};
-  if (values.empty()) return axis;
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  axis.low = std::floor(std::log10(*least) - 0.02);
-  axis.high = std::ceil(std::log10(*most) + 0.02);
-  return axis;
 }
 
 /// A point where it is drawn.
@@ -73,54 +41,6 @@ struct Mark {
   const Point* point = nullptr;
   bool front = false;
 };
-
-void traceMark(cairo_t* cr, int kind, double x, double y, double r) {
-  cairo_new_path(cr);
-  if (kind == 0) cairo_arc(cr, x, y, r, 0.0, 6.2831853);
-  if (kind == 1) cairo_rectangle(cr, x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);
-  if (kind >= 2) {
-    const double way = kind == 2 ? 1.0 : -1.0;
-    cairo_move_to(cr, x, y - way * 1.25 * r);
-    cairo_line_to(cr, x + 1.1 * r, y + way * 0.75 * r);
-    cairo_line_to(cr, x - 1.1 * r, y + way * 0.75 * r);
-    cairo_close_path(cr);
-  }
-}
-
-std::string decade(int k) {
-  return k >= -2 && k <= 3 ? fmt::format("{:g}", std::pow(10.0, k)) : fmt::format("1e{}", k);
-}
-
-void drawAxes(cairo_t* cr, const Axis& x, const Axis& y, const std::string& along, const std::string& up) {
-  exporting::setFont(cr, 10.5);
-  cairo_set_line_width(cr, 1.0);
-  for (int k = static_cast<int>(x.low); k <= static_cast<int>(x.high); ++k) {
-    exporting::setGrey(cr, kPale);
-    cairo_move_to(cr, x.at(std::pow(10.0, k)), y.from);
-    cairo_line_to(cr, x.at(std::pow(10.0, k)), y.to);
-    cairo_stroke(cr);
-    exporting::setGrey(cr, kDark);
-    exporting::drawText(cr, decade(k), x.at(std::pow(10.0, k)), y.from + 15.0, 0.5);
-  }
-  for (int k = static_cast<int>(y.low); k <= static_cast<int>(y.high); ++k) {
-    exporting::setGrey(cr, kPale);
-    cairo_move_to(cr, x.from, y.at(std::pow(10.0, k)));
-    cairo_line_to(cr, x.to, y.at(std::pow(10.0, k)));
-    cairo_stroke(cr);
-    exporting::setGrey(cr, kDark);
-    exporting::drawText(cr, decade(k), x.from - 6.0, y.at(std::pow(10.0, k)) + 4.0, 1.0);
-  }
-  exporting::setGrey(cr, 0.4);
-  cairo_rectangle(cr, x.from, y.to, x.to - x.from, y.from - y.to);
-  cairo_stroke(cr);
-  exporting::setGrey(cr, kDark);
-  exporting::drawText(cr, along, 0.5 * (x.from + x.to), y.from + 32.0, 0.5);
-  cairo_save(cr);
-  cairo_translate(cr, x.from - 50.0, 0.5 * (y.from + y.to));
-  cairo_rotate(cr, -1.5707963);
-  exporting::drawText(cr, up, 0.0, 0.0, 0.5);
-  cairo_restore(cr);
-}
 
 void drawFront(cairo_t* cr, const std::vector<Mark>& marks, const Axis& x, const Axis& y) {
   std::vector<Mark> front;
@@ -145,13 +65,10 @@ void drawCurve(cairo_t* cr, std::vector<Mark> marks, const Style& style, const A
             [](const Mark& a, const Mark& b) { return a.point->spacing > b.point->spacing; });
   exporting::setColor(cr, style.color, 0.8);
   cairo_set_line_width(cr, 1.4);
-  if (marks.front().point->courant > 0.0) {
-    const double dashes[] = {4.0, 3.0};
-    cairo_set_dash(cr, dashes, 2, 0.0);
-  }
+  if (marks.front().point->courant > 0.0) setDashes(cr, 4.0, 3.0);
   for (const Mark& m : marks) cairo_line_to(cr, x.at(m.x), y.at(m.y));
   cairo_stroke(cr);
-  cairo_set_dash(cr, nullptr, 0, 0.0);
+  setDashes(cr, 0.0, 0.0);
 }
 
 /// To three digits: as much as a label has room for.
@@ -215,12 +132,11 @@ void drawTarget(cairo_t* cr, const Axes& axes, double target) {
   if (!(target > 0.0) || std::log10(target) < axes.y.low || std::log10(target) > axes.y.high) return;
   exporting::setGrey(cr, 0.45);
   cairo_set_line_width(cr, 1.0);
-  const double dashes[] = {2.0, 3.0};
-  cairo_set_dash(cr, dashes, 2, 0.0);
+  setDashes(cr, 2.0, 3.0);
   cairo_move_to(cr, axes.x.from, axes.y.at(target));
   cairo_line_to(cr, axes.x.to, axes.y.at(target));
   cairo_stroke(cr);
-  cairo_set_dash(cr, nullptr, 0, 0.0);
+  setDashes(cr, 0.0, 0.0);
 }
 
 std::vector<Mark> marksOf(const Panel& panel) {

@@ -95,6 +95,8 @@ class Judge:
             return self.run_froude(words, expected)
         if program == "python3":
             return self.execute([sys.executable] + words[1:], expected)
+        if program == "node":
+            return self.missing(words[1:2])
         if program in known:
             return known[program](words)
         if program in ("validation", "dam_curve"):

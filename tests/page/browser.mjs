@@ -3,7 +3,7 @@ import { execFileSync, spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 export const kSkipped = 77;
@@ -18,7 +18,7 @@ export function skip(reason) {
 export async function openBrowser(root) {
   let playwright;
   try {
-    playwright = createRequire(join(root, 'src/export/web/package.json'))('playwright-core');
+    playwright = createRequire(resolve(root, 'src/export/web/package.json'))('playwright-core');
   } catch {
     skip('playwright-core is not installed: npm --prefix src/export/web ci');
   }

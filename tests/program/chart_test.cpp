@@ -3,8 +3,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
+#include "plan/chart_page.h"
 #include "plan/diagram.h"
 #include "run/exit_codes.h"
 
@@ -112,6 +114,18 @@ TEST(ChartPicture, is_drawn_as_svg_and_as_png_even_where_nothing_ended) {
     EXPECT_NE(svg.find("<svg"), std::string::npos);
     EXPECT_NE(svg.find("<desc>a &lt; b</desc>"), std::string::npos);
   }
+}
+
+TEST(ChartPage, holds_every_point_also_those_that_did_not_end) {
+  const std::string file = ::testing::TempDir() + "chart_page.html";
+  const std::vector<Point> points{point("dam", "pbf", 0.1, 0.25, 1.0), failed("apic")};
+  writeChartPage(file, panels(points), "where");
+  std::stringstream text;
+  text << std::ifstream(file).rdbuf();
+  EXPECT_NE(text.str().find("\"error\":0.25"), std::string::npos);
+  EXPECT_NE(text.str().find("\"error\":null"), std::string::npos);
+  EXPECT_NE(text.str().find("\"front\":true"), std::string::npos);
+  std::filesystem::remove(file);
 }
 
 }  // namespace

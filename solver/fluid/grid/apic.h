@@ -36,6 +36,7 @@ class Apic final : public FluidModel {
   void holdCarried(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
   void startPressure(const StepContext& context, const ParticlePool& pool);
   void spreadChange();
+  Obstacles::Distance wallBehind(const Obstacles& obstacles, const Vec2& at) const;
   void holdWalls(const StepContext& context);
   void moveParticles(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);

@@ -1,4 +1,7 @@
 // What the grid model has to do with polygons and walls: cut cells, faces behind walls, paths, and what is booked.
+#include <algorithm>
+#include <array>
+
 #include <froude/base/parallel.h>
 #include <froude/solver/coupling/leak_check.h>
 #include <froude/solver/fluid/grid/apic.h>
@@ -46,11 +49,24 @@ void Apic::cutCells(const StepContext& context) {
   cuts_.update(range, outlines_);
 }
 
+// Deep behind a side of the domain nothing else matters, and a query would go through all polygons.
+Obstacles::Distance Apic::wallBehind(const Obstacles& obstacles, const Vec2& at) const {
+  const Box& box = domain_.box;
+  const std::array<double, 4> depth{box.min.x() - at.x(), at.x() - box.max.x(), box.min.y() - at.y(),
+                                    at.y() - box.max.y()};
+  const std::array<Vec2, 4> inwards{Vec2(1.0, 0.0), Vec2(-1.0, 0.0), Vec2(0.0, 1.0), Vec2(0.0, -1.0)};
+  const auto deepest = static_cast<std::size_t>(std::max_element(depth.begin(), depth.end()) - depth.begin());
+  const std::size_t across = deepest < 2 ? 2 : 0;
+  const bool corner = depth[across] > 0.0 || depth[across + 1] > 0.0;
+  if (!domain_.closed[deepest] || corner || depth[deepest] < 2.0 * grid_.size) return obstacles.distance(at, filter());
+  return {-depth[deepest], inwards[deepest], -1};
+}
+
 // What is behind a wall goes along it: its velocity loses the normal part that is not the wall's.
 void Apic::holdWalls(const StepContext& context) {
   const TileGrid& tiles = particles_.tiles();
   auto hold = [&](FaceComponent& c, const FaceComponent& other, int axis, AlignedArray<float>& held) {
-    held.resize(tiles.values());
+    tiles.fit(held);
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin + 1; t <= end; ++t) {
         TileHalo value, known;
@@ -61,7 +77,7 @@ void Apic::holdWalls(const StepContext& context) {
           if (c.open[place] > 0.0f || c.known[place] == 0.0f) continue;
           const auto [i, j] = tiles.cell(place);
           const Vec2 at = grid_.origin + grid_.size * (axis == 0 ? Vec2(i, j + 0.5) : Vec2(i + 0.5, j));
-          const Obstacles::Distance wall = context.obstacles.distance(at, filter());
+          const Obstacles::Distance wall = wallBehind(context.obstacles, at);
           if (!(wall.distance < kInfinity)) continue;
           if (!loaded) {
             tiles.loadHalo(other.value.data(), t, value);
@@ -117,9 +133,9 @@ void Apic::meetWalls(const StepContext& context, ParticlePool& pool, ImpulseLedg
     forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t k) {
       const Vec2 at(x[k], y[k]), way = size * Vec2(static_cast<double>(dx_[k]), static_cast<double>(dy_[k]));
       // What is free around its start, and around its end: most go along a wall, not into it.
-      const double length = way.norm(), free = context.obstacles.freeDistance(at, point.filter);
+      const double length = way.norm(), free = context.obstacles.clearance(at);
       if (free > length) return;
-      if (free > 0.0 && free + context.obstacles.clearance(at + way) > length) return;
+      if (free > 0.0 && domain_.box.contains(at + way) && free + context.obstacles.clearance(at + way) > length) return;
       PathResult path;
       followPath(context.obstacles, at, way / dt, dt, point, path);
       if (path.contacts > 0) {

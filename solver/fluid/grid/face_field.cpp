@@ -74,10 +74,10 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
   linkTiles(*tiles_, links_);
   const TileGrid& tiles = *tiles_;
   for (FaceComponent* c : {&x, &y}) {
-    for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved}) tiles.clear(*field);
-    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->open, &c->known}) field->resize(tiles.values());
+    for (AlignedArray<float>* field : {&c->weight, &c->value, &c->change, &c->shift, &c->open, &c->solved, &c->known})
+      tiles.fit(*field);
   }
-  node.resize(tiles.values());
+  tiles.fit(node);
   sumsOf_.assign(tiles.size() + 1, 0);
   std::uint32_t count = 0;
   for (std::size_t t = 1; t <= tiles.size(); ++t) {
@@ -99,6 +99,8 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
     join(&TileSums::vSum, y.value.data() + at);
     join(&TileSums::node, node.data() + at);
     for (FaceComponent* c : {&x, &y}) {
+      for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved})
+        std::fill_n(field->data() + at, kCells, 0.0f);
       for (std::size_t k = at; k < at + kCells; ++k) {
         const bool any = c->weight[k] > 0.0f;
         c->value[k] = any ? c->value[k] / c->weight[k] : 0.0f;
@@ -137,7 +139,7 @@ void FaceField::start(Front& front, AlignedArray<float>& values, const AlignedAr
   front.fresh.resize(count * kSide);
   front.extent.resize(count);
   front.moves.resize(count);
-  front.next.resize(tiles_->values());
+  tiles_->fit(front.next);
   front.extent[0] = kNothing;
   const GridLoops& loops = gridLoops(simd_);
   forEachTile(*tiles_, [&](std::size_t t) {

@@ -34,9 +34,9 @@ void GridPressure::begin(const CutGrid& grid, const CutCells& cuts, std::span<co
   centers_.assign(centers.begin(), centers.end());
   cuts_ = &cuts;
   tiles_ = &particles.tiles();
-  for (AlignedArray<float>* field : {&value_, &right_, &shift_}) tiles_->clear(*field);
-  for (AlignedArray<float>* field : {&area_, &density_, &steepX_, &steepY_}) field->resize(tiles_->values());
-  kind_.resize(tiles_->values());
+  for (AlignedArray<float>* field : {&value_, &right_, &shift_, &area_, &density_, &steepX_, &steepY_})
+    tiles_->fit(*field);
+  tiles_->fit(kind_);
   wet_.resize(tiles_->size() + 1);
   forEachTile(*tiles_, [&](std::size_t t) { fillTile(t, faces); });
   listCutCells();
@@ -53,6 +53,7 @@ void GridPressure::fillTile(std::size_t t, FaceField& faces) {
   const std::span<const CutCell> cells = cuts_->cells();
   std::size_t next = cuts_->tileBegin(tile.at.x, tile.at.y);
   const std::size_t at = t * kCells;
+  for (AlignedArray<float>* field : {&value_, &right_, &shift_}) std::fill_n(field->data() + at, kCells, 0.0f);
   auto fill = [&](std::size_t place, std::size_t count, bool solid) {
     std::fill_n(kind_.data() + place, count, solid ? GridCell::Solid : GridCell::Air);
     for (AlignedArray<float>* field : {&area_, &faces.x.open, &faces.y.open}) {
@@ -369,10 +370,10 @@ std::array<double, 2> GridPressure::compression() const {
     double most = 0.0, sum = 0.0, count = 0.0;
   };
   const Part all = reduceBlocks<Part>(
-      tiles_->size(), {},
+      kCells * tiles_->size(), {},  // blocks are of whole tiles
       [&](std::size_t begin, std::size_t end) {
         Part part;
-        for (std::size_t t = begin + 1; t <= end; ++t) {
+        for (std::size_t t = begin / kCells + 1; t <= end / kCells; ++t) {
           if (wet_[t] == 0) continue;
           TileHalo density, area;
           tiles_->loadHalo(density_.data(), t, density);

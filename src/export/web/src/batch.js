@@ -7,6 +7,15 @@ const kMostMultiples = 48;
 
 const isNumber = (cell) => cell !== '' && Number.isFinite(Number(cell));
 
+/** Bounds of the finite values with some room on both sides. */
+function padded(values) {
+  const finite = values.filter(Number.isFinite);
+  const low = finite.reduce((a, b) => Math.min(a, b), Infinity);
+  const high = finite.reduce((a, b) => Math.max(a, b), -Infinity);
+  const pad = high > low ? 0.05 * (high - low) : Math.abs(high) || 1;
+  return [low - pad, high + pad];
+}
+
 class Table {
   constructor(page, header, rows) {
     this.page = page;
@@ -46,7 +55,8 @@ class Table {
       const arrow = { none: '', ascending: ' \u25B2', descending: ' \u25BC' }[sorted];
       return h('th', { scope: 'col', 'aria-sort': sorted }, h('button', { type: 'button', 'data-column': this.header[k], click: () => this.sort(k) }, this.header[k] + arrow));
     });
-    const shown = this.order.filter((i) => this.rows[i].join(' ').toLowerCase().includes(this.filter.toLowerCase()));
+    const names = ['run', 'status', ...this.page.parameters].map((name) => this.header.indexOf(name));
+    const shown = this.order.filter((i) => names.map((k) => this.rows[i][k]).join(' ').toLowerCase().includes(this.filter.toLowerCase()));
     const cell = (row, k) => {
       const name = this.header[k];
       if (name === 'run') return h('td', {}, h('a', { href: `${row[k].split('/').map(encodeURIComponent).join('/')}/index.html` }, row[k]));
@@ -78,9 +88,16 @@ function parameterPlot(page, header, rows) {
     const [xs, ys] = [column(state.x), column(state.y)];
     const groups = state.by === 'nothing' ? rows.map(() => state.y) : column(state.by);
     const points = rows.map((_, i) => i).filter((i) => isNumber(xs[i]) && isNumber(ys[i])).sort((a, b) => Number(xs[a]) - Number(xs[b]));
-    const names = [...new Set(groups)];
-    const curves = names.map((name) => ({ label: state.by === 'nothing' ? name : `${state.by} = ${name}`, values: points.map((i) => (groups[i] === name ? Number(ys[i]) : null)) }));
-    place.replaceChildren(chart({ title: `${state.y} over ${state.x}`, x: points.map((i) => Number(xs[i])), xLabel: state.x, yLabel: state.y, curves, points: true, height: 300 }));
+    // A place on the x axis holds one run of each curve; further ones of the same x and curve get places of their own.
+    const places = [];
+    for (const i of points) {
+      let k = places.findIndex((place) => place.x === Number(xs[i]) && !place.ys.has(groups[i]));
+      if (k < 0) k = places.push({ x: Number(xs[i]), ys: new Map() }) - 1;
+      places[k].ys.set(groups[i], Number(ys[i]));
+    }
+    const curves = [...new Set(groups)].map((name) => ({ label: state.by === 'nothing' ? name : `${state.by} = ${name}`, values: places.map((place) => place.ys.get(name) ?? null) }));
+    place.replaceChildren(chart({ title: `${state.y} over ${state.x}`, x: places.map((place) => place.x), xLabel: state.x, yLabel: state.y, curves, points: true, height: 300,
+      xRange: padded(places.map((place) => place.x)), range: padded(points.map((i) => Number(ys[i]))) }));
   };
   const change = (key) => (value) => { state[key] = value; draw(); };
   draw();
@@ -95,11 +112,9 @@ function smallMultiples(page) {
   const place = h('div', { class: 'charts multiples' });
   const draw = (name) => {
     const having = page.runs.filter((run) => run.gauges[name]);
-    let [low, high] = [Infinity, -Infinity];
-    for (const run of having) for (const value of run.gauges[name][1]) if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
-    const pad = high > low ? 0.05 * (high - low) : Math.abs(high) || 1;
+    const range = padded(having.flatMap((run) => run.gauges[name][1]));
     const shown = having.slice(0, kMostMultiples);
-    place.replaceChildren(...shown.map((run) => chart({ title: run.name, x: run.gauges[name][0], xLabel: 't (s)', yLabel: page.units[name] ?? '', curves: [{ label: name, values: run.gauges[name][1] }], height: 150, legend: false, range: [low - pad, high + pad] })));
+    place.replaceChildren(...shown.map((run) => chart({ title: run.name, x: run.gauges[name][0], xLabel: 't (s)', yLabel: page.units[name] ?? '', curves: [{ label: name, values: run.gauges[name][1] }], height: 150, legend: false, range })));
     if (shown.length < having.length) place.append(h('p', { class: 'note' }, `the first ${shown.length} of ${having.length} runs`));
   };
   draw(names[0]);

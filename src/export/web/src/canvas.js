@@ -3,22 +3,28 @@ import earcut from 'earcut';
 
 const kParticleVertex = `#version 300 es
 in float x; in float y; in float value;
-uniform vec4 box; uniform vec4 view; uniform float size; uniform vec2 range; uniform sampler2D palette; uniform vec3 plain;
+uniform vec4 box; uniform vec4 view; uniform float size; uniform sampler2D palette; uniform vec3 plain;
 flat out vec3 color;
 void main() {
   vec2 p = (box.xy + vec2(x, y) * box.zw - view.xy) * view.zw;
   gl_Position = vec4(p, 0.0, 1.0);
   gl_PointSize = size;
-  float t = clamp(range.x + value * range.y, 0.0, 1.0);
-  color = plain.r >= 0.0 ? plain : textureLod(palette, vec2((t * 32.0 + 0.5) / 33.0, 0.5), 0.0).rgb;
+  color = plain.r >= 0.0 ? plain : textureLod(palette, vec2((value * 32.0 + 0.5) / 33.0, 0.5), 0.0).rgb;
 }`;
 const kParticleFragment = `#version 300 es
 precision mediump float;
-flat in vec3 color; uniform bool round; out vec4 pixel;
+flat in vec3 color; out vec4 pixel;
 void main() {
-  if (round) { vec2 d = gl_PointCoord * 2.0 - 1.0; if (dot(d, d) > 1.0) discard; }
+  vec2 d = gl_PointCoord * 2.0 - 1.0;
+  if (dot(d, d) > 1.0) discard;
   pixel = vec4(color, 1.0);
 }`;
+const kPictureVertex = `#version 300 es
+void main() { gl_Position = vec4(vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0), 0.0, 1.0); }`;
+const kPictureFragment = `#version 300 es
+precision mediump float;
+uniform sampler2D picture; out vec4 pixel;
+void main() { pixel = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }`;
 const kShapeVertex = `#version 300 es
 in vec2 at; in vec3 tint; uniform vec4 view; flat out vec3 color;
 void main() { gl_Position = vec4((at - view.xy) * view.zw, 0.0, 1.0); color = tint; }`;
@@ -31,11 +37,20 @@ const kFill = [0.80, 0.81, 0.83];
 const kOutline = [0.27, 0.29, 0.32];
 const kOpenSide = [0.85, 0.86, 0.88];
 const kBackground = [1, 1, 1];
-const kRoundFrom = 3.5; // [pixels]: below, a square is as good as a disc
+// Discs up to this diameter [pixels] are stamped into a picture by the processor: without a graphics card a point takes ten
+// times as long, and with one the picture costs nothing.
+const kStampedTo = 8;
 const kSpread = 1.35; // a particle's disc against the spacing, so that dense fluid has no holes
 
 export function rgbOf(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+}
+
+/** A colour of a palette at t in [0, 1], linear between its entries. */
+function mixed(palette, t) {
+  const place = t * (palette.length - 1);
+  const k = Math.min(Math.floor(place), palette.length - 2);
+  return palette[k].map((v, c) => v + (place - k) * (palette[k + 1][c] - v));
 }
 
 function program(gl, vertex, fragment) {
@@ -51,6 +66,21 @@ function program(gl, vertex, fragment) {
   if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
   return made;
 }
+
+/** Rows of a disc of that diameter [pixels]: [y, from, to] about its centre's pixel; a square where it is hardly more. */
+function stamp(diameter) {
+  const side = Math.max(1, Math.round(diameter));
+  const low = -Math.floor((side - 1) / 2);
+  const middle = low + (side - 1) / 2;
+  const rows = [];
+  for (let y = low; y < low + side; ++y) {
+    const half = side < 4 ? side / 2 : Math.sqrt(Math.max(0, (side * side) / 4 - (y - middle) ** 2));
+    rows.push([y, Math.ceil(middle - half), Math.floor(middle + half)]);
+  }
+  return rows;
+}
+
+const packed = (color) => (255 << 24 | Math.round(255 * color[2]) << 16 | Math.round(255 * color[1]) << 8 | Math.round(255 * color[0])) >>> 0;
 
 /** A shape of a page cut into triangles, in its own frame. */
 function cut(rings) {
@@ -102,6 +132,7 @@ export class Painter {
     this.gl = gl;
     this.particles = program(gl, kParticleVertex, kParticleFragment);
     this.shapes = program(gl, kShapeVertex, kShapeFragment);
+    this.picture = { program: program(gl, kPictureVertex, kPictureFragment), array: gl.createVertexArray(), texture: null, pixels: new Uint32Array(0) };
     this.cuts = page.shapes.map(cut);
     const [x0, y0, x1, y1] = page.box;
     this.box = [x0, y0, x1 - x0, y1 - y0];
@@ -208,39 +239,96 @@ export class Painter {
 
   // ---- drawing
 
-  /** `look`: { by: 'speed' | 'pressure' | 'strain' | 'phase', range: [low, high] of bytes, phases: three colours }. */
+  /** `look`: { by: 'speed' | 'pressure' | 'strain' | 'phase', phases: three colours }. */
   draw(frame, look) {
     const gl = this.gl;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(...kBackground, 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
     const view = [...this.center, (2 * this.scale) / this.canvas.width, (2 * this.scale) / this.canvas.height];
-    if (frame) for (const kind of [0, 1]) this.drawParticles(frame.species[kind], kind, look, view);
+    if (frame) this.drawAllParticles(frame, look, view);
     this.drawShapes(frame, look, view);
   }
-  drawParticles(species, kind, look, view) {
-    const n = species.id.length;
-    if (n === 0) return;
+  drawAllParticles(frame, look, view) {
+    this.stamped = false;
+    for (const kind of [0, 1]) {
+      const species = frame.species[kind];
+      if (species.id.length === 0) continue;
+      const diameter = (kind === 0 ? kSpread * this.page.spacing : 2 * this.page.bulletRadius) * this.scale;
+      const values = look.by === 'pressure' && kind === 0 ? species.value : species.speed;
+      const plain = look.by === 'phase' || look.by === 'strain' ? look.phases[kind] : null;
+      if (diameter < kStampedTo) this.stampParticles(species, values, diameter, plain);
+      else {
+        this.showStamped();
+        this.drawParticles(species, kind, values, diameter, plain, view);
+      }
+    }
+    this.showStamped();
+  }
+  stampParticles(species, values, diameter, plain) {
+    const { width, height } = this.canvas;
+    if (!this.stamped) {
+      if (this.picture.pixels.length !== width * height) this.picture.pixels = new Uint32Array(width * height);
+      this.picture.pixels.fill(packed(kBackground));
+      this.stamped = true;
+    }
+    const pixels = this.picture.pixels;
+    const colors = Uint32Array.from({ length: 256 }, (_, byte) => packed(plain ?? mixed(this.palettes.viridis, byte / 255)));
+    const rows = stamp(Math.max(diameter, 1.5));
+    const scale = this.scale;
+    const ax = (this.box[2] / 65535) * scale;
+    const ay = (this.box[3] / 65535) * scale;
+    const bx = (this.box[0] - this.center[0]) * scale + width / 2;
+    const by = (this.box[1] - this.center[1]) * scale + height / 2;
+    const { x, y } = species;
+    for (let i = 0; i < x.length; ++i) {
+      const px = Math.floor(ax * x[i] + bx);
+      const py = Math.floor(ay * y[i] + by);
+      if (px < -kStampedTo || py < -kStampedTo || px > width + kStampedTo || py > height + kStampedTo) continue;
+      const color = colors[values[i]];
+      for (let r = 0; r < rows.length; ++r) {
+        const row = py + rows[r][0];
+        if (row < 0 || row >= height) continue;
+        const to = Math.min(width - 1, px + rows[r][2]);
+        for (let at = Math.max(0, px + rows[r][1]); at <= to; ++at) pixels[row * width + at] = color;
+      }
+    }
+  }
+  /** Puts what was stamped on the canvas. */
+  showStamped() {
+    if (!this.stamped) return;
+    this.stamped = false;
     const gl = this.gl;
-    const by = look.by === 'pressure' && kind === 0 ? species.value : species.speed;
-    const plain = look.by === 'phase' || look.by === 'strain' ? look.phases[kind] : [-1, 0, 0];
+    const { width, height } = this.canvas;
+    if (this.picture.size !== `${width} ${height}`) {
+      if (this.picture.texture) gl.deleteTexture(this.picture.texture);
+      this.picture.size = `${width} ${height}`;
+      this.picture.texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, this.picture.texture);
+      gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
+    gl.bindTexture(gl.TEXTURE_2D, this.picture.texture);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(this.picture.pixels.buffer));
+    gl.useProgram(this.picture.program);
+    gl.bindVertexArray(this.picture.array);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+  drawParticles(species, kind, values, size, plain, view) {
+    const gl = this.gl;
     gl.bindVertexArray(this.arrays[kind]);
-    [species.x, species.y, by].forEach((values, k) => {
+    [species.x, species.y, values].forEach((column, k) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[kind][k]);
-      gl.bufferData(gl.ARRAY_BUFFER, values, gl.STREAM_DRAW);
+      gl.bufferData(gl.ARRAY_BUFFER, column, gl.STREAM_DRAW);
     });
-    const diameter = kind === 0 ? kSpread * this.page.spacing : 2 * this.page.bulletRadius;
-    const size = Math.max(diameter * this.scale, 1.5);
     gl.useProgram(this.particles);
     const at = (name) => gl.getUniformLocation(this.particles, name);
     gl.uniform4f(at('box'), ...this.box);
     gl.uniform4f(at('view'), ...view);
     gl.uniform1f(at('size'), size);
-    gl.uniform2f(at('range'), ...look.range);
-    gl.uniform3f(at('plain'), ...plain);
-    gl.uniform1i(at('round'), size >= kRoundFrom ? 1 : 0);
+    gl.uniform3f(at('plain'), ...(plain ?? [-1, 0, 0]));
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    gl.drawArrays(gl.POINTS, 0, n);
+    gl.drawArrays(gl.POINTS, 0, species.id.length);
   }
   drawShapes(frame, look, view) {
     const gl = this.gl;

@@ -2,9 +2,11 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { showBatch } from './batch.js';
+import { showChart } from './chart.js';
+import { showField } from './field.js';
 import { showRun } from './run.js';
 
-const kinds = { run: showRun, batch: showBatch };
+const kinds = { run: showRun, field: showField, batch: showBatch, chart: showChart };
 
 const page = JSON.parse(document.getElementById('data').textContent);
 document.title = page.title;

@@ -85,7 +85,7 @@ export class Player {
     this.onTime?.(this.store.times[index]);
   }
   redraw() {
-    this.painter.draw(this.frame, { by: this.by, range: [0, 1], phases: this.phases });
+    this.painter.draw(this.frame, { by: this.by, phases: this.phases });
     if (this.frame) ++this.drawn;
   }
   toggle() {

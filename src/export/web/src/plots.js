@@ -30,7 +30,7 @@ function timeMark(time) {
 const axisValues = (plot, ticks) => ticks.map((tick) => short(Number(tick.toPrecision(12))));
 
 /** A chart that is as wide as its place. `curves`: [{ label, values, dash? }]; `x` rises. */
-export function chart({ title, x, xLabel, yLabel, curves, points = false, height = 220, mark = null, legend = true, range = null }) {
+export function chart({ title, x, xLabel, yLabel, curves, points = false, height = 220, mark = null, legend = true, range = null, xRange = null }) {
   const place = h('figure', { class: 'chart' }, h('figcaption', {}, title));
   const shown = curves.slice(0, kMostCurves);
   if (shown.length < curves.length) place.append(h('p', { class: 'note' }, `${shown.length} of ${curves.length} curves`));
@@ -38,7 +38,7 @@ export function chart({ title, x, xLabel, yLabel, curves, points = false, height
   const options = {
     width: 320,
     height,
-    scales: { x: { time: false }, y: range ? { range: () => range } : {} },
+    scales: { x: xRange ? { time: false, range: () => xRange } : { time: false }, y: range ? { range: () => range } : {} },
     axes: [axis(xLabel, 30), axis(yLabel, 58)],
     legend: { show: legend },
     cursor: { drag: { x: true, y: false } },
@@ -48,10 +48,9 @@ export function chart({ title, x, xLabel, yLabel, curves, points = false, height
       ...shown.map((curve, k) => ({
         label: curve.label,
         stroke: kColors[k % kColors.length],
-        width: points ? 0 : 1.75,
+        width: points ? 1 : 1.75,
         dash: curve.dash,
         spanGaps: true,
-        paths: points ? () => null : undefined,
         points: points ? { show: true, size: 8, fill: kColors[k % kColors.length] } : { show: false },
         value: (plot, value) => short(value),
       })),
