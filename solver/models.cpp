@@ -182,11 +182,11 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
   // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 583 bytes a particle
-  // for pbf, 635 for dfsph, 740 for wcsph, 960 for apic, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes
+  // for pbf, 635 for dfsph, 740 for wcsph, 890 for apic, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes
   // each. State columns, undo copy, scratch, and at a checkpoint its image in memory.
   constexpr std::size_t kBulletBytes = 240, kFieldBytes = 56'000'000;
   const std::string model = def.fluid ? def.fluid->model : "";
-  const std::size_t fluidBytes = model == "apic" ? 960 : model == "wcsph" ? 740 : model == "dfsph" ? 640 : 590;
+  const std::size_t fluidBytes = model == "apic" ? 890 : model == "wcsph" ? 740 : model == "dfsph" ? 640 : 590;
   return kFieldBytes + fluidBytes * fluidParticles + kBulletBytes * bullets;
 }
 
