@@ -65,11 +65,11 @@ std::span<const ModelCard> modelCards() {
       {"wcsph",
        "Weakly compressible SPH",
        "a fluid with a free surface that is a little elastic (sound at ten times the largest speed), walls exact for "
-       "polygons, free-slip or no-slip, laminar viscosity",
-       "incompressibility, surface tension, cavities",
+       "polygons, free-slip or no-slip, laminar viscosity, surface tension with a contact angle",
+       "incompressibility, cavities",
        {"courant * support / v_max, courant = 0.2 unless set", "0.25 sqrt(support / g)",
         "dx sqrt(0.3 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.6 for the largest",
-        "acoustic: a sub-step is at most 64 steps of support / 2 / (c + v)",
+        "acoustic: a sub-step is at most 64 steps of support / 2 / (c + v)", "0.2 sqrt(density dx^3 / surface tension)",
         "0.125 (support / 2)^2 / viscosity; where that would halve the step or worse the velocities are solved for",
         "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"a fluid at rest over steps and corners moves at 2 % of sqrt(g depth) where 20 spacings are deep, at half a "

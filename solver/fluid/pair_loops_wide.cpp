@@ -291,7 +291,7 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
 
 // Returns the excess that the pressure belongs to.
 HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i,
-                        std::uint32_t count, VF excess) {
+                        std::uint32_t count, VF before, VF excess) {
   if (state.pressure == nullptr) return excess;
   const F f;
   excess = hn::Max(loadSome(state.least + i, count), excess);
@@ -300,6 +300,7 @@ HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>&
     const VF one = hn::Set(f, 1.0f), r = hn::Add(one, kappa), r3 = hn::Mul(r, hn::Mul(r, r));
     kappa = hn::Mul(hn::Set(f, 1.0f / 7.0f), hn::MulSub(hn::Mul(r3, r3), r, one));
   }
+  kappa = hn::MulAdd(hn::Set(f, state.damping), hn::Sub(excess, before), kappa);
   kappa = hn::Mul(hn::Set(f, state.stiffness), hn::Add(kappa, hn::Set(f, state.background)));
   storeSome(kappa, state.pressure + i, count);
   const VF scale = hn::Mul(hn::Set(f, volume), kappa);
@@ -369,8 +370,9 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
           wall = hn::MulAdd(hn::Set(f, loop.wallShare), loadSome(loop.wallGain + i, count), wall);
           gain = hn::MulAdd(hn::Set(f, 2.0f), wall, gain);
         }
-        const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, loadSome(loop.excess + i, count));
-        storeSome(takeState(loop.state, b, loop.volume, i, count, next), loop.next + i, count);
+        const VF before = loadSome(loop.excess + i, count);
+        const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, before);
+        storeSome(takeState(loop.state, b, loop.volume, i, count, before, next), loop.next + i, count);
         if (loop.newX == nullptr) return;
         storeMoved(frame.x + i, loadSome(loop.ux + i, count), loop.newX + i, count);
         storeMoved(frame.y + i, loadSome(loop.uy + i, count), loop.newY + i, count);

@@ -29,7 +29,7 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
       walls_(unit_,
              settings.kernel == kernel::Kind::Blend ? latticeRecession(def.spacing / unit_, settings.kernel) : 0.0,
              settings.kernel, {def.group, def.collidesWith}),
-      tension_(def),
+      tension_(def, unit_, volume_, settings.kernel),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }

@@ -19,8 +19,11 @@ constexpr float kLone = 0.5f;       // density below which nothing pulls at a pa
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
-constexpr int kMostSteps = 64;      // acoustic ones a sub-step
-constexpr float kStiffest = 1.2f;   // diagonal of div grad from which a fluid is made softer
+// Of the change of ρ' in an acoustic step, added to ρ' where a surface is tense: a drop that has drawn itself round
+// would ring for long.
+constexpr float kDamping = 0.5f;
+constexpr int kMostSteps = 64;     // acoustic ones a sub-step
+constexpr float kStiffest = 1.2f;  // diagonal of div grad from which a fluid is made softer
 // Of what densities differ from the sum over particles, taken back in an acoustic step; and at most in a sub-step.
 constexpr double kReturn = 1e-3, kMostReturn = 0.1;
 // Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
@@ -40,14 +43,15 @@ std::array<float, 2> stray(std::size_t i, std::uint64_t time) {
 }  // namespace
 
 double acousticStepAt(const FluidDef& def, double speed) {
-  const double sound = def.compressible.soundSpeed > 0.0 ? def.compressible.soundSpeed : speed / kMach;
+  const double sound = def.compressible.soundSpeed > 0.0
+                           ? def.compressible.soundSpeed
+                           : std::max(speed, std::sqrt(def.surfaceTension / (def.density * def.spacing))) / kMach;
   return kAcoustic * supportOf(def) / kernel::kSupport / (sound + speed);
 }
 
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool,
                     {kCourant, kTypicalStiffness, kLargestStiffness, 0.0, kernel::Kind::WendlandC2}) {
-  if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of wcsph; pbf and dfsph have it");
   if (!(def.compressible.support >= 2.0 && def.compressible.support <= 6.0)) {
     throw Error("the support of wcsph is 2 to 6 spacings");
   }
@@ -103,7 +107,7 @@ void Wcsph::chooseSoundSpeed(const StepContext& context, const ParticlePool& poo
     soundSpeed_ = def_.compressible.soundSpeed;
     return;
   }
-  double speed = flowSpeed_;
+  double speed = std::max(flowSpeed_, tension_.fastestWave());
   walls_.forEachLink([&](const WallLink& link) {
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
     speed =
@@ -148,6 +152,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
   });
+  if (tension_.any()) spreadTension(context, steps);
   walls_.forEachFilm([&](std::uint32_t i) { target_[i] = kNever; });
   for (const Carried& c : carried_) {  // goes its own way, without gravity, whatever others give back
     const std::uint32_t i = c.particle;
@@ -158,6 +163,22 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   }
   findDiagonal();
   limitStiffness();
+}
+
+// All that the outline pulls is in the velocities: back out of them, and a share of it into each acoustic step.
+void Wcsph::spreadTension(const StepContext& context, int steps) {
+  const double whole = tension_.unit() * context.dt * context.dt / (steps * unit_), share = whole / steps;
+  auto give = [&](std::uint32_t i, const Vec2& pull) {
+    moveX_[i] -= static_cast<float>(whole * pull.x());
+    moveY_[i] -= static_cast<float>(whole * pull.y());
+    fallX_[i] += static_cast<float>(share * pull.x());
+    fallY_[i] += static_cast<float>(share * pull.y());
+  };
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) {
+    give(p.first, p.pull);
+    give(p.second, -p.pull);
+  });
+  tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) { give(p.particle, p.pull); });
 }
 
 // Of div grad, as dfsph's, with the mirror image of the fluid behind walls: (BS + 2g)² + Σ|B∇W|².
@@ -286,9 +307,13 @@ void Wcsph::compressAndDrift(const StepContext& context, int steps, bool last) {
   loop.newX = nextX_.data();
   loop.newY = nextY_.data();
   if (!last) {
-    loop.state = {least_.data(),  stiffness_,
-                  background_,    def_.compressible.equation == EquationOfState::Tait,
-                  change_.data(), {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()}};
+    loop.state = {least_.data(),
+                  stiffness_,
+                  background_,
+                  def_.compressible.equation == EquationOfState::Tait,
+                  tension_.any() ? kDamping : 0.0f,
+                  change_.data(),
+                  {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()}};
   }
   compress(context, loop);
   latticeX_.swap(nextX_);

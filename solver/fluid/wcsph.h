@@ -11,8 +11,8 @@
 
 namespace froude {
 
-/// The acoustic step [s] where the fastest moves at `speed` > 0 [m/s] and sound at ten times that, or as defined. For
-/// predictions.
+/// The acoustic step [s] where the fastest moves at `speed` > 0 [m/s], and sound at ten times that or the shortest
+/// capillary waves, or as defined. For predictions.
 FROUDE_API double acousticStepAt(const FluidDef& def, double speed);
 
 /// A sub-step is one set of cells and walls for a number of acoustic steps, each symplectic: velocities by the
@@ -29,6 +29,7 @@ class Wcsph final : public ParticleFluid {
   double acousticStep(double speed) const;
   void chooseSoundSpeed(const StepContext& context, const ParticlePool& pool);
   void start(const StepContext& context, const ParticlePool& pool, int steps, bool fresh);
+  void spreadTension(const StepContext& context, int steps);
   void findDiagonal();
   void limitStiffness();
   void giveBack();

@@ -79,7 +79,8 @@ constexpr double kAlmostInviscid = 1e-5;  // [m²/s] that apic may leave out
 
 void refuseWhatApicLacks(TableReader& model, const FluidDef& def) {
   if (def.surfaceTension > 0.0) {
-    model.fail("fluid", "apic has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
+    model.fail("fluid",
+               "apic has no surface tension in this version, right are pbf, dfsph and wcsph, or surface_tension = 0");
   }
   if (def.viscosity > kAlmostInviscid) {
     model.fail("fluid",
@@ -119,10 +120,6 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   }
   if (def.model == "wcsph") {
     readCompressible(model, def.compressible);
-    if (def.surfaceTension > 0.0) {
-      model.fail("fluid",
-                 "wcsph has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
-    }
   } else {
     for (const char* key : kCompressibleKeys) {
       if (model.has(key)) model.fail(key, "a key of wcsph alone, right is to leave it out or fluid = \"wcsph\"");

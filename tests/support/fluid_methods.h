@@ -28,7 +28,7 @@ inline const auto kFluidMethods = ::testing::Values("pbf", "dfsph", "wcsph", "ap
 /// Those that have viscosity, and walls to which a fluid sticks.
 inline const auto kViscousMethods = ::testing::Values("pbf", "dfsph", "wcsph");
 /// Those that surface tension serves.
-inline const auto kTensionMethods = ::testing::Values("pbf", "dfsph");
+inline const auto kTensionMethods = ::testing::Values("pbf", "dfsph", "wcsph");
 
 inline std::string methodName(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
 

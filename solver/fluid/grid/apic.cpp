@@ -34,7 +34,8 @@ Apic::Apic(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
       density_(pool.addColumn<float>("density", ColumnKind::State)),
       gradient_{pool.addColumn<float>("du/dx", ColumnKind::State), pool.addColumn<float>("du/dy", ColumnKind::State),
                 pool.addColumn<float>("dv/dx", ColumnKind::State), pool.addColumn<float>("dv/dy", ColumnKind::State)} {
-  if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of apic; pbf and dfsph have it");
+  if (def.surfaceTension > 0.0)
+    throw Error("surface tension is not in this version of apic; pbf, dfsph and wcsph have it");
   const Vec2 size = domain.box.size();
   if (domain.periodicX && domain.periodicY && std::abs(grid_.periodY * grid_.size - size.y()) > 1e-9 * size.y()) {
     throw Error(
