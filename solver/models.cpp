@@ -86,8 +86,8 @@ std::span<const ModelCard> modelCards() {
        "Affine particle-in-cell",
        "incompressible fluid with a free surface: particles on a grid of two spacings, one global pressure solve a "
        "step, "
-       "polygons as exact cut cells, free-slip",
-       "viscosity, walls that fluid sticks to, surface tension",
+       "polygons as exact cut cells, free-slip or no-slip, implicit viscosity",
+       "surface tension, negative pressure at a free surface",
        {"courant * 2 spacing / v_max, courant = 5 unless set, gravity's share of the speed included",
         "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"two sides of a plate thinner than a cell feel each other's velocities",

@@ -275,8 +275,8 @@ void World::Impl::judge(StepStats& stats, double dt) {
       fail(Trouble::Displacement, travel, def.limits.displacement);
       return;
     }
-    if (fluidModel->undoesCompression() && stats.maxCompression > def.limits.compression) {
-      fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
+    if (const double compression = fluidModel->judgedCompression(stats); compression > def.limits.compression) {
+      fail(Trouble::Compression, compression, def.limits.compression);
       return;
     }
   }

@@ -121,7 +121,6 @@ class ParticleFluid : public FluidModel {
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   // particle_viscosity.cpp
   void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;
-  double smallerExtent(const ParticlePool& pool) const;
   void applyViscosity(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
   void smoothVelocities(ParticlePool& pool);
   void dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const;

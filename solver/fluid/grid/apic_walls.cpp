@@ -49,6 +49,23 @@ void Apic::cutCells(const StepContext& context) {
   cuts_.update(range, outlines_);
 }
 
+// Friction holds at the wall what slides: behind it the slip of the next face before it goes on, with the other sign.
+float Apic::heldBySticking(const FaceComponent& c, std::size_t place, int axis, const Obstacles::Distance& wall,
+                           const Vec2& surface, float without) const {
+  const int towards = std::abs(wall.normal.x()) > std::abs(wall.normal.y()) ? 0 : 1;
+  const int step = wall.normal[towards] > 0.0 ? 1 : -1;
+  const auto [i, j] = particles_.tiles().cell(place);
+  const std::size_t before = particles_.tiles().place(i + (towards == 0 ? step : 0), j + (towards == 1 ? step : 0));
+  const double depth = std::max(0.0, -wall.distance) / grid_.size;
+  const double height = std::abs(wall.normal[towards]) - depth;
+  const bool reaches = c.open[before] > 0.0f && c.known[before] > 0.0f && height > 0.0;
+  const double share = reaches && depth < height ? depth / height : 1.0;
+  const double along = 1.0 - wall.normal[axis] * wall.normal[axis];
+  const double fluid = static_cast<double>(reaches ? c.value[before] : c.value[place]);
+  return without - static_cast<float>(along * (static_cast<double>(c.value[place]) - surface[axis]) +
+                                      share * along * (fluid - surface[axis]));
+}
+
 // Deep behind a side of the domain nothing else matters, and a query would go through all polygons.
 Obstacles::Distance Apic::wallBehind(const Obstacles& obstacles, const Vec2& at) const {
   const Box& box = domain_.box;
@@ -98,19 +115,13 @@ void Apic::holdWalls(const StepContext& context) {
           v[1 - axis] = count > 0.0f ? static_cast<double>(sum / count) : 0.0;
           const Vec2 surface = context.obstacles.surfaceVelocityAt(wall.body, at, wall.normal);
           held[place] = static_cast<float>(v[axis] - wall.normal[axis] * (v - surface).dot(wall.normal));
-          if (c.weight[place] == 0.0f) continue;
-          // Pressure is that of the cell's middle; what lies between there and the wall hangs on the closed faces.
-          const float given = held[place] - (c.value[place] - (c.solved[place] == 0.0f ? c.change[place] : 0.0f));
-          Vec2 impulse(0.0, 0.0);
-          impulse[axis] = -particleMass() * static_cast<double>(c.weight[place] * given);
-          kept_[begin / kTileBlock].push_back({wall.body, at, impulse, surface});
+          if (rubbed_ && context.obstacles.sticks(wall.body)) {
+            held[place] = heldBySticking(c, place, axis, wall, surface, held[place]);
+          }
         }
       }
     });
   };
-  const std::size_t blocks = blockCount(tiles.size(), kTileBlock);
-  if (kept_.size() < blocks) kept_.resize(blocks);
-  for (std::vector<Kept>& block : kept_) block.clear();
   hold(faces_.x, faces_.y, 0, heldX_);
   hold(faces_.y, faces_.x, 1, heldY_);
   std::copy_n(heldX_.data(), tiles.values(), faces_.x.value.data());
@@ -185,12 +196,7 @@ void Apic::bookWalls(const StepContext& context, const Vec2& gained, ImpulseLedg
     impulses.add(wall.body, at, impulse, context.obstacles.velocityAt(wall.body, at));
     rest -= impulse;
   });
-  for (const std::vector<Kept>& block : kept_) {
-    for (const Kept& k : block) {
-      impulses.add(k.body, k.at, k.impulse, k.surface);
-      rest -= k.impulse;
-    }
-  }
+  if (rubbed_) viscosity_.book(impulses, rest);
   impulses.add(-1, domain_.box.center(), rest, Vec2(0.0, 0.0));
 }
 

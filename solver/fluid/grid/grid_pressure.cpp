@@ -12,8 +12,10 @@ constexpr std::int32_t kSide = TileGrid::kSide;
 constexpr std::size_t kCells = TileGrid::kCells;
 constexpr std::size_t kTileBlock = 4;  // tiles a task
 constexpr float kSurface = 0.5f;       // density at the free surface
-constexpr float kNearest = 0.1f;  // of a cell: the free surface is taken to be at least so far from a cell's middle
-constexpr float kTolerance = 1e-3f, kEvenTolerance = 1e-2f;  // share of a cell
+constexpr float kNearest = 0.1f;     // of a cell: the free surface is taken to be at least so far from a cell's middle
+constexpr double kTolerance = 1e-3;  // share of a cell
+constexpr double kRelative = 1e-2;   // of what flows or falls in a sub-step: short ones would not feel their floor
+constexpr float kEvenTolerance = 1e-2f;
 constexpr int kMostIterations = 60;
 // Of what is over-full, taken back in a step, and at most of a cell; of what is lacking inside.
 constexpr float kShare = 1.0f, kMostShare = 0.5f, kLackShare = 0.2f;
@@ -29,7 +31,7 @@ bool isInTile(const CutCell& cell, const Tile& tile) { return cell.i >> 4 == til
 }  // namespace
 
 void GridPressure::begin(const CutGrid& grid, const CutCells& cuts, std::span<const Vec2> centers,
-                         const ParticleTiles& particles, double full, FaceField& faces) {
+                         const ParticleTiles& particles, double full, const FreeBodies* bodies, FaceField& faces) {
   grid_ = grid;
   centers_.assign(centers.begin(), centers.end());
   cuts_ = &cuts;
@@ -45,6 +47,7 @@ void GridPressure::begin(const CutGrid& grid, const CutCells& cuts, std::span<co
   findDensity(full, faces);
   findFluid(faces);
   findSurface(faces);
+  findWalls(bodies);
 }
 
 // What is not listed is open or solid as the cells beside it are that are not listed either.
@@ -255,6 +258,53 @@ void GridPressure::groundSurface(const FaceField& faces) {
   });
 }
 
+// The pressure of a cell is that of its middle; to the wall it goes on as it does between the cell and those of fluid
+// beside it, or what lies between there and the wall would be weightless.
+// Free bodies feel that of the middle: what pushes them is what they push, and with the far side of a thin layer in it
+// layers that they press out were flung.
+void GridPressure::findWalls(const FreeBodies* bodies) {
+  walls_.clear();
+  for (const Listed& l : listed_) {
+    if (kind_[l.place] != GridCell::Fluid) continue;
+    const CutCell& cell = cuts_->cells()[l.cut];
+    const CutPart& part = cuts_->parts()[cell.part];
+    const std::size_t right = tiles_->place(cell.i + 1, cell.j), up = tiles_->place(cell.i, cell.j + 1);
+    const std::size_t beside[2][2] = {{tiles_->place(cell.i - 1, cell.j), right},
+                                      {tiles_->place(cell.i, cell.j - 1), up}};
+    const float open[2][2] = {{open_[0][l.place], right >= kCells ? open_[0][right] : 0.0f},
+                              {open_[1][l.place], up >= kCells ? open_[1][up] : 0.0f}};
+    for (std::uint32_t w = part.wall; w < part.wall + part.wallCount; ++w) {
+      const CutWall& wall = cuts_->walls()[w];
+      const double square = wall.normal.squaredNorm();
+      if (square == 0.0) continue;
+      const Vec2 center = wall.body < 0 ? grid_.origin : centers_[static_cast<std::size_t>(wall.body)];
+      Wall found{
+          w, static_cast<std::uint32_t>(l.place), center, center + wall.moment / square * rightNormal(wall.normal), {}};
+      const bool free = bodies != nullptr && bodies->isFree(wall.body);
+      Vec2 normal = wall.normal;
+      double moment = wall.moment;
+      for (int axis = 0; axis < 2; ++axis) {
+        bool wet[2];
+        for (int side = 0; side < 2; ++side) {
+          wet[side] = open[axis][side] > 0.0f && kind_[beside[axis][side]] == GridCell::Fluid;
+        }
+        const double share = wet[0] && wet[1] ? 0.5 : 1.0;
+        for (int side = 0; side < 2; ++side) {
+          if (!wet[side] || free) continue;
+          const double outwards = side == 0 ? -share : share;
+          const Vec2 more = outwards * wall.spread.row(axis).transpose();
+          const double turn = outwards * (wall.middle[axis] - 0.5) * wall.moment;
+          found.pressure.add(beside[axis][side], more, turn);
+          normal -= more;
+          moment -= turn;
+        }
+      }
+      found.pressure.add(l.place, normal, moment);
+      walls_.push_back(found);
+    }
+  }
+}
+
 // The share of each cell that would flow out in the step, less what walls push in.
 void GridPressure::findDivergence(const StepContext& context, const FaceField& faces) {
   const auto perSize = static_cast<float>(dt_ / grid_.size);
@@ -275,21 +325,40 @@ void GridPressure::findDivergence(const StepContext& context, const FaceField& f
       }
     }
   });
-  forEachWall(1.0, [&](const CutWall& wall, const Vec2&, const Vec2& at, std::size_t place) {
-    const double in = bodies_.isFree(wall.body) ? bodies_.add(wall, static_cast<std::uint32_t>(place))
-                                                : context.obstacles.velocityAt(wall.body, at).dot(wall.normal);
-    right_[place] += static_cast<float>(dt_ / grid_.size * in);
-  });
+  for (const Wall& w : walls_) {
+    const CutWall& wall = cuts_->walls()[w.wall];
+    if (!bodies_.isFree(wall.body)) {
+      const double in = context.obstacles.velocityAt(wall.body, w.at).dot(wall.normal);
+      right_[w.place] += static_cast<float>(dt_ / grid_.size * in);
+      continue;
+    }
+    for (const WallPressure::Share& share : w.pressure.shares()) {
+      right_[share.place] += static_cast<float>(dt_ / grid_.size * bodies_.add(wall.body, share));
+    }
+  }
 }
 
-PressureReport GridPressure::project(const StepContext& context, double density, FaceField& faces) {
+PressureReport GridPressure::project(const StepContext& context, double density, FaceField& faces,
+                                     std::span<const Wrench> drag) {
+  const PressureReport report = solve(context, density, faces, drag);
+  bodies_.settle(value_.data());
+  return report;
+}
+
+PressureReport GridPressure::foresee(const StepContext& context, double density, FaceField& faces) {
+  return solve(context, density, faces, {});
+}
+
+PressureReport GridPressure::solve(const StepContext& context, double density, FaceField& faces,
+                                   std::span<const Wrench> drag) {
   dt_ = context.dt;
-  bodies_.begin(context.freeBodies, density, grid_.size, dt_);
+  bodies_.begin(context.freeBodies, density, grid_.size, dt_, drag);
   findDivergence(context, faces);
   if (!system_) system_.emplace(context.simd);
   system_->prepare(*tiles_, coefficients_, bodies_.system());
-  const PressureReport report = system_->solve(right_.data(), value_.data(), {kTolerance, kMostIterations});
-  bodies_.settle(value_.data());
+  const double way = dt_ * std::max(context.maxSpeed, dt_ * context.acceleration) / grid_.size;
+  const auto tolerance = static_cast<float>(std::min(kTolerance, kRelative * way));
+  const PressureReport report = system_->solve(right_.data(), value_.data(), {tolerance, kMostIterations});
   const auto speed = static_cast<float>(grid_.size / dt_);
   findJumps(value_, speed, faces.x.solved.data(), faces.y.solved.data(), faces.x.change.data(), faces.y.change.data());
   forEachTile(*tiles_, [&](std::size_t t) {
@@ -365,9 +434,9 @@ void GridPressure::findJumps(const AlignedArray<float>& kappa, float speed, cons
 }
 
 // Over the cell and those around it: single cells are over-full for a step or two wherever drops meet.
-std::array<double, 2> GridPressure::compression() const {
+std::array<double, 3> GridPressure::compression() const {
   struct Part {
-    double most = 0.0, sum = 0.0, count = 0.0;
+    double most = 0.0, sum = 0.0, count = 0.0, held = 0.0, room = 0.0;
   };
   const Part all = reduceBlocks<Part>(
       kCells * tiles_->size(), {},  // blocks are of whole tiles
@@ -395,15 +464,18 @@ std::array<double, 2> GridPressure::compression() const {
               part.most = std::max(part.most, beyond);
               part.sum += beyond;
               ++part.count;
+              part.held += static_cast<double>(density.value(i, j) * area.value(i, j));
+              part.room += static_cast<double>(area.value(i, j));
             }
           }
         }
         return part;
       },
       [](const Part& x, const Part& y) {
-        return Part{std::max(x.most, y.most), x.sum + y.sum, x.count + y.count};
+        return Part{std::max(x.most, y.most), x.sum + y.sum, x.count + y.count, x.held + y.held, x.room + y.room};
       });
-  return {all.most, all.count > 0.0 ? all.sum / all.count : 0.0};
+  if (all.count == 0.0) return {0.0, 0.0, 0.0};
+  return {all.most, all.sum / all.count, all.held / all.room - 1.0};
 }
 
 std::size_t GridPressure::memoryBytes() const {
