@@ -1,7 +1,9 @@
 """Many small runs: one batch, against as many single-thread processes side by side as there are cores, against one process
 after the other with all cores. In turn, in one session, by ratio. Also what a checkpoint costs, from the runs' summaries.
 
-Usage: batch_bench.py FROUDE [RUNS [ROUNDS [SIZE]]]     SIZE: edge of the block in particles, 71 for 5,041 of them"""
+Usage: batch_bench.py FROUDE [RUNS [ROUNDS [SIZE]]] [--rows FILE]
+SIZE: edge of the block in particles, 71 for 5,041 of them. --rows appends to a file of bench/results; its item is a run."""
+import argparse
 import json
 import os
 import statistics
@@ -29,7 +31,7 @@ def timed(action):
     return time.monotonic() - begin
 
 
-def main(froude, runs, rounds, size):
+def main(froude, runs, rounds, size, rows):
     doctor = json.loads(subprocess.run([froude, "doctor", "--json"], capture_output=True, check=True).stdout)
     build = doctor.get("build_type") or doctor.get("build", "")
     cores = len(os.sched_getaffinity(0))
@@ -77,5 +79,23 @@ def main(froude, runs, rounds, size):
           f"{1e9 * summary.get('checkpoint_seconds', 0) / summary['particles']:.0f} ns a particle")
 
 
+    if rows:
+        if build != "Release":
+            sys.exit("batch_bench: rows come from the preset bench")
+        case = f"{runs} runs of {summary['particles']} particles"
+        with open(rows, "a", encoding="utf-8") as file:
+            if file.tell() == 0:
+                file.write("question,case,cpu,cores,commit,build,simd,threads,dt,ns_median,ns_best,error,runs\n")
+            for name, seconds in times.items():
+                median, best = (1e9 * value / runs for value in (statistics.median(seconds), min(seconds)))
+                file.write(f'batch,"{case}: {name}","{doctor["cpu"]}",{cores},{doctor["git_commit"]},release,{doctor["simd"]},'
+                           f"{cores},n/a,{median:.0f},{best:.0f},n/a,{rounds}\n")
+
+
 if __name__ == "__main__":
-    main(os.path.abspath(sys.argv[1]), *(int(word) for word in (sys.argv[2:] + ["64", "1", "71"][len(sys.argv) - 2:])))
+    parser = argparse.ArgumentParser(usage="batch_bench.py FROUDE [RUNS [ROUNDS [SIZE]]] [--rows FILE]")
+    parser.add_argument("froude")
+    parser.add_argument("numbers", nargs="*", type=int)
+    parser.add_argument("--rows")
+    given = parser.parse_args()
+    main(os.path.abspath(given.froude), *given.numbers, *[64, 1, 71][len(given.numbers):], given.rows)

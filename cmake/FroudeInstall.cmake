@@ -71,6 +71,9 @@ if(TARGET froude)
   file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
   set_target_properties(froude PROPERTIES INSTALL_RPATH $ORIGIN/${to_libraries})
   install(TARGETS froude RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  # What `froude chart` runs and compares with.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/froude)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/tests/data DESTINATION ${CMAKE_INSTALL_DATADIR}/froude/tests)
   # The manual page and the completion scripts are the program's own words about its command line.
   if(NOT CMAKE_CROSSCOMPILING)
     set(words ${PROJECT_BINARY_DIR}/share)

@@ -290,7 +290,10 @@ void CellCutter::addWalls(const CutGrid& grid, std::span<const CutPiece> pieces,
     }
     at->wall.normal += normal;
     at->wall.moment += cross(arm, normal);
-    at->wall.length += normal.norm();
+    const double length = normal.norm();
+    at->wall.length += length;
+    at->wall.middle += length * middle;
+    at->wall.spread += (middle - Vec2(0.5, 0.5)) * normal.transpose();
   };
   for (const CutSlab& s : slabs_) {
     if (s.leftEdge >= 0) {
@@ -305,6 +308,9 @@ void CellCutter::addWalls(const CutGrid& grid, std::span<const CutPiece> pieces,
   for (const FlatWall& f : flatWalls_) {
     add(slabs_[f.slab].part, f.piece, {0.5 * (f.low + f.high), f.y},
         {0.0, f.solidAbove ? f.low - f.high : f.high - f.low});
+  }
+  for (CutPartWall& w : walls_) {
+    if (w.wall.length > 0.0) w.wall.middle /= w.wall.length;
   }
 }
 

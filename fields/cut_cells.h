@@ -71,6 +71,10 @@ struct CutWall {
   Vec2 normal{0, 0};    // ∫ n ds [of a cell's size]
   double moment = 0.0;  // ∫ r × n ds [m · of a cell's size]
   double length = 0.0;  // [of a cell's size]
+  Vec2 middle{0, 0};    // ∫ x ds / length, from the cell's lower left corner [cells]
+  /// ∫ (x − middle of the cell)·n ds, rows by the axis of x [cells²]: what a pressure that changes across the cell
+  /// adds.
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
 };
 
 /// A face that is not open between two main parts alone: left or bottom part `a`, right or top part `b`; each is an

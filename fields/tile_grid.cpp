@@ -123,7 +123,7 @@ void TileGrid::loadHalo(const float* field, std::size_t t, TileHalo& halo) const
   const float* right = field + tile.right * kCells;
   const std::int32_t columns = tile.columns, rows = tile.rows;
   const auto copyRow = [&](const float* from, float* to) {
-    std::memcpy(to, from, sizeof(float) * static_cast<std::size_t>(columns));
+    std::memcpy(to, from, sizeof(float) * kSide);  // of a known length: inlined
     if (columns < kSide) std::fill(to + columns, to + kSide + 1, 0.0f);
   };
   for (std::int32_t j = 0; j < rows; ++j) {

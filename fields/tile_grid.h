@@ -80,6 +80,16 @@ class FROUDE_API TileGrid {
   template <typename T>
   void clear(AlignedArray<T>& field) const {
     field.clear();
+    fit(field);
+  }
+  /// Makes `field` one of this grid; the null tile holds zeros if nobody wrote there, all else is undefined. What grows
+  /// takes an eighth more than it needs: fields are many, and doubled ones would be half empty.
+  template <typename T>
+  void fit(AlignedArray<T>& field) const {
+    if (values() > field.capacity()) {
+      field.clear();
+      field.reserve(values() + values() / 8);
+    }
     field.resize(values());
   }
   /// Copies tile t and the cells around it.

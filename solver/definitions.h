@@ -119,6 +119,7 @@ struct FluidDef {
   double contactAngle = kPi / 2;  // [rad]
   int sweeps = 0;                 // pressure sweeps a sub-step; 0: the model's default
   double courant = 0.0;           // largest v·dt/support radius; 0: the model's default
+  double flip = 0.0;              // apic: share that a particle keeps of what its velocity differs from the grid's by
   ViscositySolver viscositySolver = ViscositySolver::Auto;
   CompressibleDef compressible;
   std::uint32_t group = 1, collidesWith = ~0u;

@@ -65,11 +65,11 @@ std::span<const ModelCard> modelCards() {
       {"wcsph",
        "Weakly compressible SPH",
        "a fluid with a free surface that is a little elastic (sound at ten times the largest speed), walls exact for "
-       "polygons, free-slip or no-slip, laminar viscosity",
-       "incompressibility, surface tension, cavities",
+       "polygons, free-slip or no-slip, laminar viscosity, surface tension with a contact angle",
+       "incompressibility, cavities",
        {"courant * support / v_max, courant = 0.2 unless set", "0.25 sqrt(support / g)",
         "dx sqrt(0.3 / (p / density)), p twice the typical pressure sum p^2 / sum |p|; 0.6 for the largest",
-        "acoustic: a sub-step is at most 64 steps of support / 2 / (c + v)",
+        "acoustic: a sub-step is at most 64 steps of support / 2 / (c + v)", "0.2 sqrt(density dx^3 / surface tension)",
         "0.125 (support / 2)^2 / viscosity; where that would halve the step or worse the velocities are solved for",
         "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"a fluid at rest over steps and corners moves at 2 % of sqrt(g depth) where 20 spacings are deep, at half a "
@@ -86,8 +86,8 @@ std::span<const ModelCard> modelCards() {
        "Affine particle-in-cell",
        "incompressible fluid with a free surface: particles on a grid of two spacings, one global pressure solve a "
        "step, "
-       "polygons as exact cut cells, free-slip",
-       "viscosity, walls that fluid sticks to, surface tension",
+       "polygons as exact cut cells, free-slip or no-slip, implicit viscosity",
+       "surface tension, negative pressure at a free surface",
        {"courant * 2 spacing / v_max, courant = 5 unless set, gravity's share of the speed included",
         "0.25 * support / speed of a moving polygon", "0.5 rad of spin of a moving polygon"},
        {"two sides of a plate thinner than a cell feel each other's velocities",
@@ -181,12 +181,13 @@ std::unique_ptr<FluidModel> makeFluidModel(const FluidDef& def, const DomainDef&
 }
 
 std::size_t estimateWorldBytes(const WorldDef& def, std::size_t fluidParticles, std::size_t bullets) {
-  // Peak resident memory of the program, Release: dam_speed at 10,000 and 99,856 particles gives 583 bytes a particle
-  // for pbf, 635 for dfsph, 740 for wcsph, 960 for apic, and 56 MB besides; 20,000 and 200,000 bullets give 238 bytes
-  // each. State columns, undo copy, scratch, and at a checkpoint its image in memory.
-  constexpr std::size_t kBulletBytes = 240, kFieldBytes = 56'000'000;
+  // Peak resident memory of the program: dam_speed at 10,000 and 99,856 particles gives 405 bytes a particle for pbf
+  // (to 0.35 s), 513 for dfsph (0.03 s), 550 for wcsph (0.1 s), 637 for apic (2 s), and 57 MB besides; 20,000 and
+  // 200,000 bullets gave 238 bytes each. State columns, undo copy, scratch, seeds; the image of a checkpoint in memory
+  // takes the place of the undo copy.
+  constexpr std::size_t kBulletBytes = 240, kFieldBytes = 57'000'000;
   const std::string model = def.fluid ? def.fluid->model : "";
-  const std::size_t fluidBytes = model == "apic" ? 960 : model == "wcsph" ? 740 : model == "dfsph" ? 640 : 590;
+  const std::size_t fluidBytes = model == "apic" ? 640 : model == "wcsph" ? 550 : model == "dfsph" ? 510 : 405;
   return kFieldBytes + fluidBytes * fluidParticles + kBulletBytes * bullets;
 }
 

@@ -175,6 +175,9 @@ std::string World::stateHash() const {
 }
 
 void World::archive(Archive& a) {
+  // What is saved takes memory of its own: the copy for undoing and the cells of questions make room for it.
+  impl_->snapshot = MemorySnapshot();
+  impl_->query = FluidQuery();
   impl_->archive(a);
   if (!a.loading()) return;
   ++impl_->version;

@@ -100,7 +100,6 @@ StepBound World::Impl::chooseStep(double maxDt) const {
   if (soft != nullptr) {
     bound.tighten(kSoftStep, StepLimit::Soft);
     if (fluidModel != nullptr && fluidModel->feelsSoftWalls()) {
-      bound.tighten(fluidModel->longestSoftStep(present.maxSpeed), StepLimit::Soft);
       const double speed = soft->fastest();
       if (speed > 0.0) bound.tighten(kLargestSoftTravel * fluidModel->supportRadius() / speed, StepLimit::Wall);
     }
@@ -286,8 +285,8 @@ void World::Impl::judge(StepStats& stats, double dt) {
       fail(Trouble::Displacement, travel, def.limits.displacement);
       return;
     }
-    if (fluidModel->undoesCompression() && stats.maxCompression > def.limits.compression) {
-      fail(Trouble::Compression, stats.maxCompression, def.limits.compression);
+    if (const double compression = fluidModel->judgedCompression(stats); compression > def.limits.compression) {
+      fail(Trouble::Compression, compression, def.limits.compression);
       return;
     }
   }

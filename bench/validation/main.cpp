@@ -124,8 +124,9 @@ Series run(const Case& entry, const std::string& method, const Options& options)
                                     static_cast<std::size_t>(options.threads));
   tbb::task_arena arena(options.threads);
   for (const double spacing : form.spacings)
-    series.outcomes.push_back(
-        arena.execute([&] { return runOnce(entry, method, spacing, form.overrides, options.limit); }));
+    series.outcomes.push_back(arena.execute([&] {
+      return runOnce(entry, method, spacing, form.overrides, {options.limit, {}});
+    }));
   return series;
 }
 

@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-12;  // errors below it have no order
 using Clock = std::chrono::steady_clock;
 
 /// Steps to the scene's end; what went wrong in words, or nothing.
-std::string stepToEnd(World& world, const scene::Scene& scene, double every, double limit, Measure& measure,
+std::string stepToEnd(World& world, const scene::Scene& scene, double every, const Patience& patience, Measure& measure,
                       double& wall) {
   double due = 0.0;
   double lastRead = -1.0;
@@ -35,7 +35,8 @@ std::string stepToEnd(World& world, const scene::Scene& scene, double every, dou
       return fmt::format("unstable: {} {:.3g}, at most {:.3g}, at t = {:.4g} s", name(report.trouble),
                          report.troubleValue, report.troubleLimit, world.time());
     if (!(world.time() > before)) return fmt::format("unstable: time stands at t = {:.4g} s", before);
-    if (wall > limit) return fmt::format("stopped: took {:.3g} s up to t = {:.4g} s", wall, world.time());
+    if (patience.stop && patience.stop()) return fmt::format("stopped: at t = {:.4g} s", world.time());
+    if (wall > patience.seconds) return fmt::format("stopped: took {:.3g} s up to t = {:.4g} s", wall, world.time());
     if (world.time() >= due * (1.0 - 1e-12)) readAt(world.time());
   }
   if (lastRead < world.time()) readAt(world.time());
@@ -45,7 +46,7 @@ std::string stepToEnd(World& world, const scene::Scene& scene, double every, dou
 }  // namespace
 
 Outcome runOnce(const Case& entry, const std::string& method, double spacing,
-                const std::vector<scene::Override>& overrides, double limit) {
+                const std::vector<scene::Override>& overrides, const Patience& patience) {
   Outcome outcome;
   outcome.spacing = spacing;
   const bool soft = !entry.softModels.empty();
@@ -58,7 +59,7 @@ Outcome runOnce(const Case& entry, const std::string& method, double spacing,
     World world = scene::makeWorld(scene);
     if (entry.prepare) entry.prepare(world);
     const std::unique_ptr<Measure> measure = entry.measure(scene);
-    const std::string trouble = stepToEnd(world, scene, entry.every, limit, *measure, outcome.wall);
+    const std::string trouble = stepToEnd(world, scene, entry.every, patience, *measure, outcome.wall);
     for (const ParticlePool* pool : {world.fluid(), world.soft()})
       if (pool != nullptr) outcome.particles += pool->size();
     outcome.ledger = world.ledger();

@@ -20,10 +20,16 @@ struct Outcome {
   bool done() const { return state == "done"; }
 };
 
+/// When a run is given up.
+struct Patience {
+  double seconds = kInfinity;    // of wall time for the steps
+  std::function<bool()> stop{};  // asked between sub-steps; empty: never
+};
+
 /// Never throws for what a method does: a run that is refused or goes unstable says so in its state, and so does one
-/// whose steps took longer than `limit` [s of wall time].
+/// that was given up.
 Outcome runOnce(const Case& entry, const std::string& method, double spacing,
-                const std::vector<scene::Override>& overrides, double limit = kInfinity);
+                const std::vector<scene::Override>& overrides, const Patience& patience = {});
 
 /// Names of the fluid methods that this build can make.
 std::vector<std::string> fluidMethods();

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "run/shipped.h"
+
 namespace froude::validation {
 namespace {
 
@@ -19,12 +21,30 @@ Registered::Registered(Case entry) {
   cases.insert(place, std::move(entry));
 }
 
-std::span<const Case> allCases() { return registered(); }
-
-std::string scenePath(const std::string& name) {
-  return std::string(FROUDE_VALIDATION_ROOT) + "/scenes/" + name + ".toml";
+const char* flowName(FlowKind flow) {
+  switch (flow) {
+    case FlowKind::None:
+      break;
+    case FlowKind::Splash:
+      return "splash";
+    case FlowKind::Surface:
+      return "free surface";
+    case FlowKind::Confined:
+      return "confined";
+    case FlowKind::AtRest:
+      return "at rest";
+    case FlowKind::Soft:
+      return "soft";
+    case FlowKind::Bullets:
+      return "bullets";
+  }
+  return "none";
 }
 
-std::string dataPath(const std::string& file) { return std::string(FROUDE_VALIDATION_ROOT) + "/tests/data/" + file; }
+std::span<const Case> allCases() { return registered(); }
+
+std::string scenePath(const std::string& name) { return run::shippedFile("scenes/" + name + ".toml"); }
+
+std::string dataPath(const std::string& file) { return run::shippedFile("tests/data/" + file); }
 
 }  // namespace froude::validation

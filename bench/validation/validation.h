@@ -43,6 +43,10 @@ struct Form {
   std::vector<scene::Override> overrides;  // besides the method and the spacing
 };
 
+/// Kinds of flow, each with a norm of its own: what "within 5 %" means of a splash, of a confined flow, …
+enum class FlowKind { None, Splash, Surface, Confined, AtRest, Soft, Bullets };
+const char* flowName(FlowKind flow);
+
 struct Case {
   std::string name;
   std::string measures;  // one sentence: what is measured, against what
@@ -53,6 +57,9 @@ struct Case {
   std::function<void(World&)> prepare{};  // before t = 0: what a scene cannot say; empty: nothing
   /// Of a case of soft bodies: models of the first one, whose spacing is the case's. Empty: a case of fluids.
   std::vector<std::string> softModels{};
+  /// Of a case that stands on the chart: its kind, and the metrics whose root mean square is its error there.
+  FlowKind flow = FlowKind::None;
+  std::vector<std::string> norm{};
 };
 
 /// Of all files in cases/, by name.
@@ -63,7 +70,8 @@ struct Registered {
   explicit Registered(Case entry);
 };
 
-/// Where the shipped scenes and the published curves are: the source tree that this was built from.
+/// Where the shipped scenes and the published curves are: beside an installed program, else in the source tree that
+/// this was built from.
 std::string scenePath(const std::string& name);
 std::string dataPath(const std::string& file);
 

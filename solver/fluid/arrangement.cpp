@@ -58,14 +58,16 @@ void Arrangement::judge(const CellGrid& grid, std::span<const std::uint32_t> occ
                     share == 1.0f ? GradientCorrection::kUsual : static_cast<float>(1.0 / laplacianMoment_));
 }
 
-bool Arrangement::hasSurface() const {
-  const auto count = parallelSum(place_.size(), [&](std::size_t begin, std::size_t end) {
+double Arrangement::surfaceRows() const {
+  const double count = parallelSum(place_.size(), [&](std::size_t begin, std::size_t end) {
     double part = 0.0;
     for (std::size_t i = begin; i < end; ++i) part += atSurface(i) ? 1.0 : 0.0;
     return part;
   });
-  return count > kOpen * std::sqrt(static_cast<double>(place_.size()));
+  return place_.empty() ? 0.0 : count / std::sqrt(static_cast<double>(place_.size()));
 }
+
+bool Arrangement::hasSurface() const { return surfaceRows() > kOpen; }
 
 std::size_t Arrangement::memoryBytes() const {
   return correction_.memoryBytes() + 5 * xx.capacity() * sizeof(float) + place_.capacity();

@@ -32,6 +32,8 @@ class Arrangement {
   bool closed(std::size_t i) const { return correction_.closed(i); }
   /// Is there a free surface? Only that gives pressures their zero, and so tension a meaning.
   bool hasSurface() const;
+  /// Particles at a free surface, over the root of the number of all.
+  double surfaceRows() const;
   /// B by particle.
   Matrices<const float> correction() const { return correction_.matrices(); }
   /// Mean share of a Laplacian that −F finds inside, half the trace of M; 1 where nothing is inside.

@@ -30,15 +30,12 @@ class FluidModel {
   virtual double supportRadius() const = 0;
   /// How far a particle may go in a sub-step before it counts as unstable [m].
   virtual double farthestTravel() const { return supportRadius(); }
-  /// Is a sub-step to be undone that leaves the fluid compressed beyond the limit? Not where the next one takes it
-  /// back.
-  virtual bool undoesCompression() const { return true; }
+  /// Of a sub-step's compression what decides whether it is undone: the largest, where that does not pass of itself.
+  virtual double judgedCompression(const StepStats& stats) const { return stats.maxCompression; }
   /// Mass of a particle [kg/m].
   virtual double particleMass() const = 0;
   /// Does its pressure know the outlines of soft bodies (StepContext::softWalls)?
   virtual bool feelsSoftWalls() const { return false; }
-  /// The longest sub-step in which its pressure follows soft walls, maxSpeed [m/s] over all particles.
-  virtual double longestSoftStep(double) const { return kInfinity; }
   /// What its column "pressure" is times to be p/ρ: the share of a pressure gradient that its particles feel.
   virtual double pressureFactor() const { return 1.0; }
   /// The bounds that the present state puts on the next sub-step. maxSpeed [m/s] over all particles.

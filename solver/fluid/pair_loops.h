@@ -112,12 +112,15 @@ struct DivergenceLoop {
   PressureUpdate update{};
 };
 
-/// Pressures of weakly compressible fluids by their densities: κ = stiffness·(ρ' + background), with Tait's equation of
-/// ((1 + ρ')⁷ − 1)/7 for ρ'; and κB times the particles' volume. ρ' is first raised to the least that it may be.
+/// Pressures of weakly compressible fluids by their densities: κ = stiffness·(ρ' + background + damping·(ρ' − ρ'ₒ)),
+/// ρ'ₒ before the acoustic step, with Tait's equation ((1 + ρ')⁷ − 1)/7 for the first ρ'; and κB times the particles'
+/// volume. ρ' is first raised to the least that it may be. Damping: the acoustic damper of Sun et al., J. Comput. Phys.
+/// 483 (2023).
 struct StateEquation {
   const float* least = nullptr;  // by particle
   float stiffness = 0.0f, background = 0.0f;
   bool tait = false;
+  float damping = 0.0f;
   float* pressure = nullptr;  // null: nothing of this
   Matrices<float> scaled;
 };

@@ -264,7 +264,7 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
 }
 
 // Returns the excess that the pressure belongs to.
-float takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i,
+float takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i, float before,
                 float excess) {
   if (state.pressure == nullptr) return excess;
   excess = std::max(state.least[i], excess);
@@ -273,7 +273,7 @@ float takeState(const StateEquation& state, const Matrices<const float>& b, floa
     const float r = 1.0f + kappa, r3 = r * r * r;
     kappa = (r3 * r3 * r - 1.0f) / 7.0f;
   }
-  kappa = state.stiffness * (kappa + state.background);
+  kappa = state.stiffness * (kappa + state.background + state.damping * (excess - before));
   state.pressure[i] = kappa;
   state.scaled.xx[i] = volume * kappa * b.xx[i];
   state.scaled.xy[i] = volume * kappa * b.xy[i];
@@ -296,7 +296,7 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
     if (loop.wallX != nullptr) {
       gain += 2.0f * (loop.wallX[i] * ux + loop.wallY[i] * uy + loop.wallShare * loop.wallGain[i]);
     }
-    loop.next[i] = takeState(loop.state, loop.correction, loop.volume, i, excess + loop.share[i] * gain);
+    loop.next[i] = takeState(loop.state, loop.correction, loop.volume, i, excess, excess + loop.share[i] * gain);
     if (loop.newX == nullptr) return;
     loop.newX[i] = lattice::sum(frame.x[i], static_cast<std::int32_t>(std::lrintf(ux / kUnit)));
     loop.newY[i] = lattice::sum(frame.y[i], static_cast<std::int32_t>(std::lrintf(uy / kUnit)));

@@ -159,7 +159,8 @@ void momentsOf(const PairFrame& frame, const MomentLoop& loop, std::size_t begin
         storeSome(hn::Mul(second, sums[4]), loop.moment.xx + i, count);
         storeSome(hn::Mul(second, sums[5]), loop.moment.xy + i, count);
         storeSome(hn::Mul(second, sums[6]), loop.moment.yy + i, count);
-      });
+      },
+      NoFold(), hn::IfThenElseZero(hn::FirstN(f, 1), Kernel::shape(hn::Set(f, 1.0f))));
 }
 
 void moments(const PairFrame& frame, const MomentLoop& loop, std::size_t begin, std::size_t end) {
@@ -290,7 +291,7 @@ std::array<double, 2> force(const PairFrame& frame, const ForceLoop& loop, std::
 
 // Returns the excess that the pressure belongs to.
 HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>& b, float volume, std::uint32_t i,
-                        std::uint32_t count, VF excess) {
+                        std::uint32_t count, VF before, VF excess) {
   if (state.pressure == nullptr) return excess;
   const F f;
   excess = hn::Max(loadSome(state.least + i, count), excess);
@@ -299,6 +300,7 @@ HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>&
     const VF one = hn::Set(f, 1.0f), r = hn::Add(one, kappa), r3 = hn::Mul(r, hn::Mul(r, r));
     kappa = hn::Mul(hn::Set(f, 1.0f / 7.0f), hn::MulSub(hn::Mul(r3, r3), r, one));
   }
+  kappa = hn::MulAdd(hn::Set(f, state.damping), hn::Sub(excess, before), kappa);
   kappa = hn::Mul(hn::Set(f, state.stiffness), hn::Add(kappa, hn::Set(f, state.background)));
   storeSome(kappa, state.pressure + i, count);
   const VF scale = hn::Mul(hn::Set(f, volume), kappa);
@@ -307,6 +309,43 @@ HWY_INLINE VF takeState(const StateEquation& state, const Matrices<const float>&
   storeSome(hn::Mul(scale, loadSome(b.yy + i, count)), state.scaled.yy + i, count);
   return excess;
 }
+
+// Where all particles of a cell have one B, (uᵢ − uⱼ)·B∇W − diffusion·slope (aᵢ + aⱼ)·∇W is (vᵢ − wⱼ)·∇W with v = Bu −
+// diffusion·slope a and w = Bu + diffusion·slope a, found once a candidate and not once a pair.
+struct RateFold {
+  static constexpr bool kFolds = true;
+  const RateLoop& loop;
+
+  HWY_INLINE bool operator()(const CellRuns& cell, UsualCell<5>& c, std::uint32_t vectors, Owners& owners) const {
+    const Matrices<const float>& b = loop.correction;
+    if (!sameInCell(b.xx, cell) || !sameInCell(b.xy, cell) || !sameInCell(b.yy, cell)) return false;
+    const F f;
+    const VF xx = hn::Set(f, b.xx[cell.first]), xy = hn::Set(f, b.xy[cell.first]), yy = hn::Set(f, b.yy[cell.first]);
+    const VF diffusion = hn::Set(f, 0.5f * loop.diffusion), slope = hn::Set(f, 0.5f * loop.diffusion * loop.slope);
+    HWY_UNROLL(16)
+    for (std::uint32_t v = 0; v < vectors; ++v) {
+      const VF ux = c.value[0][v], uy = c.value[1][v];
+      c.value[0][v] = hn::MulAdd(slope, c.value[3][v], hn::MulAdd(xx, ux, hn::Mul(xy, uy)));
+      c.value[1][v] = hn::MulAdd(slope, c.value[4][v], hn::MulAdd(xy, ux, hn::Mul(yy, uy)));
+      c.value[2][v] = hn::Mul(diffusion, c.value[2][v]);
+    }
+    for (std::uint32_t k = 0; k < cell.last - cell.first; k += kLanes) {
+      const std::uint32_t i = cell.first + k;
+      const VF ux = hn::LoadU(f, loop.ux + i), uy = hn::LoadU(f, loop.uy + i);
+      const VF ax = hn::LoadU(f, loop.ax + i), ay = hn::LoadU(f, loop.ay + i);
+      hn::Store(hn::NegMulAdd(slope, ax, hn::MulAdd(xx, ux, hn::Mul(xy, uy))), f, owners.value[0] + k);
+      hn::Store(hn::NegMulAdd(slope, ay, hn::MulAdd(xy, ux, hn::Mul(yy, uy))), f, owners.value[1] + k);
+      hn::Store(hn::Mul(diffusion, hn::LoadU(f, loop.excess + i)), f, owners.value[2] + k);
+    }
+    return true;
+  }
+
+  static HWY_INLINE void add3(VF m, VF dx, VF dy, const VF* own, const VF* other, VF* sums) {
+    const VF jump = hn::Sub(own[2], other[2]);
+    const VF change = hn::MulAdd(hn::Sub(own[0], other[0]), dx, hn::MulAdd(hn::Sub(own[1], other[1]), dy, jump));
+    sums[0] = hn::MulAdd(WendlandC2::slope(m), change, sums[0]);
+  }
+};
 
 void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::size_t end) {
   const F f;
@@ -331,12 +370,14 @@ void rate(const PairFrame& frame, const RateLoop& loop, std::size_t begin, std::
           wall = hn::MulAdd(hn::Set(f, loop.wallShare), loadSome(loop.wallGain + i, count), wall);
           gain = hn::MulAdd(hn::Set(f, 2.0f), wall, gain);
         }
-        const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, loadSome(loop.excess + i, count));
-        storeSome(takeState(loop.state, b, loop.volume, i, count, next), loop.next + i, count);
+        const VF before = loadSome(loop.excess + i, count);
+        const VF next = hn::MulAdd(loadSome(loop.share + i, count), gain, before);
+        storeSome(takeState(loop.state, b, loop.volume, i, count, before, next), loop.next + i, count);
         if (loop.newX == nullptr) return;
         storeMoved(frame.x + i, loadSome(loop.ux + i, count), loop.newX + i, count);
         storeMoved(frame.y + i, loadSome(loop.uy + i, count), loop.newY + i, count);
-      });
+      },
+      RateFold{loop});
 }
 
 void near(const PairFrame& frame, std::uint8_t* rows, std::size_t begin, std::size_t end) {

@@ -6,6 +6,8 @@
 
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 // A guard that toggles: the targets' passes each need the text once.
 #if defined(FROUDE_PAIR_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FROUDE_PAIR_SWEEP_INL_H
@@ -322,17 +324,52 @@ HWY_INLINE void forEachVector(const PairFrame& frame, const Runs& runs, std::uin
   }
 }
 
+// Of the particles of a usual cell, by place in it: values that candidates are met with.
+struct Owners {
+  static constexpr std::uint32_t kMost = 2 * CellRuns::kUsual;
+  alignas(64) float x[kMost], y[kMost];  // half spacings from the reference
+  alignas(64) float value[3][kMost];     // of a fold
+};
+
+HWY_INLINE void loadOwners(const PairFrame& frame, const CellRuns& cell, Owners& owners) {
+  const F f;
+  const I n;
+  const VF scale = hn::Set(f, 0.5f * kUnit);
+  const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
+  for (std::uint32_t k = 0; k < cell.last - cell.first; k += kLanes) {
+    const VI x = hn::LoadU(n, frame.x + cell.first + k), y = hn::LoadU(n, frame.y + cell.first + k);
+    hn::Store(hn::Mul(hn::ConvertTo(f, hn::Sub(x, fromX)), scale), f, owners.x + k);
+    hn::Store(hn::Mul(hn::ConvertTo(f, hn::Sub(y, fromY)), scale), f, owners.y + k);
+  }
+}
+
+// Is a value the same for all particles of a cell?
+HWY_INLINE bool sameInCell(const float* value, const CellRuns& cell) {
+  const F f;
+  const VF first = hn::Set(f, value[cell.first]);
+  for (std::uint32_t i = cell.first; i < cell.last; i += kLanes) {
+    const auto differ = hn::Ne(hn::LoadU(f, value + i), first);
+    if (!hn::AllFalse(f, hn::And(differ, hn::FirstN(f, cell.last - i)))) return false;
+  }
+  return true;
+}
+
+// A fold makes three values of a cell's own, in place, by which its pairs are cheaper: bool fold(cell, candidates,
+// vectors, owners), false where it can not; then add3 takes them in the place of `add`.
+struct NoFold {
+  static constexpr bool kFolds = false;
+};
+
 // The particles of cells [begin, end). For each, add(m, dx, dy, own, other, sums) over vectors of candidates: dx, dy in
 // half spacings from candidate to particle, m = max(0, 1 − q²/4), 0 in lanes without a visible neighbour, own and other
 // the kValues values of particle and candidates; `own` has kOwn more. Then finish(i, count, sums) with the kSums sums
-// of up to kLanes particles from i on, one a lane.
+// of up to kLanes particles from i on, one a lane. `itself`: what a particle adds to its first sum, By::RowsAndItself.
 enum class By { Candidates, Rows, RowsAndItself };
-template <int kSums, int kValues, int kOwn, By kBy, typename Add, typename Finish>
+template <int kSums, int kValues, int kOwn, By kBy, typename Add, typename Finish, typename Fold>
 HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
-                         const Add& add, const Finish& finish) {
+                         const Add& add, const Finish& finish, const Fold& fold, VF itself) {
   const F f;
-  const I n;
-  const VF one = hn::Set(f, 1.0f), scale = hn::Set(f, 0.5f * kUnit);
+  const VF one = hn::Set(f, 1.0f);
   alignas(64) float rows[kSums][kRows][kLanes] = {};
   std::uint32_t filled = 0;
   auto finishRows = [&](std::uint32_t last) FROUDE_INLINE {
@@ -353,9 +390,7 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
     }
     filled = 0;
   };
-  auto begun = [&](std::uint32_t i, VF* own, VF* sums) FROUDE_INLINE {
-    HWY_UNROLL(8)
-    for (int a = 0; a < kValues + kOwn; ++a) own[a] = hn::Set(f, values[a][i]);
+  auto nothing = [&](VF* sums) FROUDE_INLINE {
     HWY_UNROLL(8)
     for (int s = 0; s < kSums; ++s) sums[s] = hn::Zero(f);
   };
@@ -364,13 +399,20 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
     for (int s = 0; s < kSums; ++s) hn::Store(sums[s], f, rows[s][filled]);
     if (++filled == kRows) finishRows(i + 1);
   };
+  auto ownValues = [&](std::uint32_t i, VF* own) FROUDE_INLINE {
+    HWY_UNROLL(8)
+    for (int a = 0; a < kValues + kOwn; ++a) own[a] = hn::Set(f, values[a][i]);
+  };
   VF own[kValues + kOwn + 1], other[kValues + 1], sums[kSums];
-  auto sweepUsual = [&](const CellRuns& cell, const UsualCell<kValues>& c, const std::uint32_t vectors) FROUDE_INLINE {
-    const VI fromX = hn::Set(n, frame.x[cell.first]), fromY = hn::Set(n, frame.y[cell.first]);
+  Owners owners;
+  // All pairs of a usual cell, kCount values each.
+  auto sweepPairs = [&](const CellRuns& cell, const UsualCell<kValues>& c, const std::uint32_t vectors, auto countTag,
+                        const auto& findOwn, const auto& addPair) FROUDE_INLINE {
+    constexpr int kCount = decltype(countTag)::value;
     for (std::uint32_t i = cell.first; i < cell.last; ++i) {
-      const VF xi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.x[i]), fromX)), scale);
-      const VF yi = hn::Mul(hn::ConvertTo(f, hn::Sub(hn::Set(n, frame.y[i]), fromY)), scale);
-      begun(i, own, sums);
+      const VF xi = hn::Set(f, owners.x[i - cell.first]), yi = hn::Set(f, owners.y[i - cell.first]);
+      findOwn(i, own);
+      nothing(sums);
       if constexpr (kBy != By::Candidates) {
         const std::uint8_t* row = frame.near + kNearRow * i;
         if (HWY_LIKELY(row[0] != kMany)) {
@@ -378,13 +420,13 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
           const bool fourth = vectors > kVectors;
           const VF dx = hn::Sub(xi, pick(c.x, places, fourth)), dy = hn::Sub(yi, pick(c.y, places, fourth));
           VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
-          if constexpr (kBy == By::RowsAndItself) m = hn::IfThenElseZero(notItself(places, cell, i), m);
-          HWY_UNROLL(8)
-          for (int a = 0; a < kValues; ++a) other[a] = pick(c.value[a], places, fourth);
-          add(m, dx, dy, own, other, sums);
           if constexpr (kBy == By::RowsAndItself) {
-            add(hn::IfThenElseZero(hn::FirstN(f, 1), one), hn::Zero(f), hn::Zero(f), own, other, sums);
+            m = hn::IfThenElseZero(notItself(places, cell, i), m);
+            sums[0] = itself;
           }
+          HWY_UNROLL(8)
+          for (int a = 0; a < kCount; ++a) other[a] = pick(c.value[a], places, fourth);
+          addPair(m, dx, dy, own, other, sums);
           done(i, sums);
           continue;
         }
@@ -394,11 +436,25 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
         const VF dx = hn::Sub(xi, c.x[v]), dy = hn::Sub(yi, c.y[v]);
         const VF m = hn::Max(hn::NegMulAdd(dy, dy, hn::NegMulAdd(dx, dx, one)), hn::Zero(f));
         HWY_UNROLL(8)
-        for (int a = 0; a < kValues; ++a) other[a] = c.value[a][v];
-        add(m, dx, dy, own, other, sums);
+        for (int a = 0; a < kCount; ++a) other[a] = c.value[a][v];
+        addPair(m, dx, dy, own, other, sums);
       }
       done(i, sums);
     }
+  };
+  auto sweepUsual = [&](const CellRuns& cell, UsualCell<kValues>& c, const std::uint32_t vectors) FROUDE_INLINE {
+    loadOwners(frame, cell, owners);
+    if constexpr (Fold::kFolds) {
+      if (HWY_LIKELY(fold(cell, c, vectors, owners))) {
+        auto folded = [&](std::uint32_t i, VF* to) FROUDE_INLINE {
+          HWY_UNROLL(3)
+          for (int a = 0; a < 3; ++a) to[a] = hn::Set(f, owners.value[a][i - cell.first]);
+        };
+        sweepPairs(cell, c, vectors, std::integral_constant<int, 3>(), folded, Fold::add3);
+        return;
+      }
+    }
+    sweepPairs(cell, c, vectors, std::integral_constant<int, kValues>(), ownValues, add);
   };
   for (std::size_t k = begin; k < end; ++k) {
     const CellRuns& cell = frame.runs[k];
@@ -415,7 +471,8 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
       Runs runs;
       collectRuns(frame, frame.cells[k], runs);
       for (std::uint32_t i = cell.first; i < cell.last; ++i) {
-        begun(i, own, sums);
+        ownValues(i, own);
+        nothing(sums);
         forEachVector(frame, runs, i, [&](VF dx, VF dy, VF m, std::uint32_t j, auto inside) FROUDE_INLINE {
           HWY_UNROLL(8)
           for (int a = 0; a < kValues; ++a) other[a] = hn::IfThenElseZero(inside, hn::LoadU(f, values[a] + j));
@@ -431,18 +488,19 @@ HWY_INLINE void sweepAll(const PairFrame& frame, std::size_t begin, std::size_t 
 template <int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
 HWY_INLINE void sweepCells(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
                            const Add& add, const Finish& finish) {
-  sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish);
+  sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish, NoFold(), hn::Zero(F()));
 }
 
 // As `sweepCells`, over the rows of neighbours where there are any. By::Rows is for sums to which a particle adds
 // nothing where it is its own neighbour.
-template <By kBy, int kSums, int kValues, int kOwn = 0, typename Add, typename Finish>
+template <By kBy, int kSums, int kValues, int kOwn = 0, typename Add, typename Finish, typename Fold = NoFold>
 HWY_INLINE void sweepNear(const PairFrame& frame, std::size_t begin, std::size_t end, const float* const* values,
-                          const Add& add, const Finish& finish) {
+                          const Add& add, const Finish& finish, const Fold& fold = Fold(), VF itself = hn::Zero(F())) {
   if (kNearPays && frame.near != nullptr) {
-    sweepAll<kSums, kValues, kOwn, kNearPays ? kBy : By::Candidates>(frame, begin, end, values, add, finish);
+    sweepAll<kSums, kValues, kOwn, kNearPays ? kBy : By::Candidates>(frame, begin, end, values, add, finish, fold,
+                                                                     itself);
   } else {
-    sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish);
+    sweepAll<kSums, kValues, kOwn, By::Candidates>(frame, begin, end, values, add, finish, fold, itself);
   }
 }
 

@@ -29,7 +29,7 @@ ParticleFluid::ParticleFluid(const FluidDef& def, const DomainDef& domain, Parti
       walls_(unit_,
              settings.kernel == kernel::Kind::Blend ? latticeRecession(def.spacing / unit_, settings.kernel) : 0.0,
              settings.kernel, {def.group, def.collidesWith}),
-      tension_(def),
+      tension_(def, unit_, volume_, settings.kernel),
       settings_(settings) {
   if (def.courant > 0.0) settings_.courant = def.courant;
 }
@@ -292,12 +292,20 @@ void ParticleFluid::findWallGain(const StepContext& context, double time) {
   bodies_.soft().addGain(time, wallGain_.data());
 }
 
+void ParticleFluid::buildCoarse(const StepContext& context, const float* density) {
+  coarse_.build(context.obstacles, filter(), grid_, occupied_, density);
+}
+
+void ParticleFluid::solveCoarse(const float* excess) {
+  const std::size_t n = grid_.size();
+  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, excess, change_.data());
+}
+
 // To `change_`, from the excess of density of each particle.
 void ParticleFluid::liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess) {
-  const std::size_t n = pool.size();
-  coarse_.build(context.obstacles, filter(), grid_, occupied_, pool.column(density_).data());
-  coarse_.solve(grid_, {predictedX_.data(), n}, {predictedY_.data(), n}, excess, change_.data());
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
+  buildCoarse(context, pool.column(density_).data());
+  solveCoarse(excess);
+  parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) change_[i] = std::max(0.0f, change_[i]);
   });
 }

@@ -24,7 +24,7 @@ class ParticleFluid : public FluidModel {
  public:
   double supportRadius() const final;
   double particleMass() const final;
-  bool feelsSoftWalls() const final { return true; }
+  bool feelsSoftWalls() const override { return true; }
   StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) final;
   std::size_t memoryBytes() const override;
@@ -67,6 +67,11 @@ class ParticleFluid : public FluidModel {
   void findArrangement(const StepContext& context, float* density, float* squares);
   /// For methods that use it: fills `wallGain_` with what the walls' own motion adds to λ in a time.
   void findWallGain(const StepContext& context, double time);
+  /// The coarse level of a pressure solve: which cells are full, by density; then, to `change_`, the κ that takes away
+  /// what is in excess, by particle.
+  void buildCoarse(const StepContext& context, const float* density);
+  void solveCoarse(const float* excess);
+  void dropCoarse() { coarse_ = CoarsePressure(); }
   void liftFromCoarse(const StepContext& context, const ParticlePool& pool, const float* excess);
   void judgeDensity(const StepContext& context, ParticlePool& pool, StepStats& stats);
   double pressureUnit(double dt) const;  // κ of one m²/s²: dt²/dx²
@@ -117,7 +122,6 @@ class ParticleFluid : public FluidModel {
   void finishPositions(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   // particle_viscosity.cpp
   void tightenByViscosity(const ParticlePool& pool, StepBound& bound) const;
-  double smallerExtent(const ParticlePool& pool) const;
   void applyViscosity(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
   void smoothVelocities(ParticlePool& pool);
   void dragAlongWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) const;

@@ -2,6 +2,7 @@
 // for the velocities at the end of the sub-step where an explicit term would ask for a shorter one
 // (docs/models/viscosity.md).
 #include <froude/base/parallel.h>
+#include <froude/solver/fluid/fluid_extent.h>
 #include <froude/solver/fluid/kernel.h>
 #include <froude/solver/fluid/particle_fluid.h>
 
@@ -35,33 +36,8 @@ void ParticleFluid::tightenByViscosity(const ParticlePool& pool, StepBound& boun
   const bool solves = def_.viscositySolver == ViscositySolver::Implicit ||
                       (def_.viscositySolver == ViscositySolver::Auto && bound.dt > kWorthwhile * term);
   if (!solves) return bound.tighten(term, StepLimit::Viscosity);
-  const double extent = smallerExtent(pool);
+  const double extent = smallerExtent(pool, domain_, unit_);
   bound.tighten(std::max(kWorthwhile * term, kResolved * extent * extent / def_.viscosity), StepLimit::Viscosity);
-}
-
-// Where x is periodic that of y, and the other way round; of a domain without sides half a period [m].
-double ParticleFluid::smallerExtent(const ParticlePool& pool) const {
-  if (domain_.periodicX && domain_.periodicY) return 0.5 * domain_.box.size().minCoeff();
-  auto extent = [&](std::span<const double> at, double whole) {
-    struct Range {
-      double low, high;
-    };
-    const auto all = reduceBlocks<Range>(
-        at.size(), {kInfinity, -kInfinity},
-        [&](std::size_t begin, std::size_t end) {
-          Range part{kInfinity, -kInfinity};
-          for (std::size_t i = begin; i < end; ++i) part = {std::min(part.low, at[i]), std::max(part.high, at[i])};
-          return part;
-        },
-        [](const Range& a, const Range& b) {
-          return Range{std::min(a.low, b.low), std::max(a.high, b.high)};
-        });
-    return at.empty() ? whole : all.high - all.low + unit_;
-  };
-  const Vec2 whole = domain_.box.size();
-  if (domain_.periodicX) return extent(pool.y(), whole.y());
-  if (domain_.periodicY) return extent(pool.x(), whole.x());
-  return std::min(extent(pool.x(), whole.x()), extent(pool.y(), whole.y()));
 }
 
 void ParticleFluid::applyViscosity(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses) {

@@ -9,10 +9,7 @@
 namespace froude {
 namespace {
 // Measurements: docs/decisions/solver-surface-tension.md.
-constexpr double kStep = 0.2;  // of √(ρ dx³/σ); a row of particles would be unstable from 1, drops are from 0.35
-// The tension of a straight row, in units of what the energy gives a length: the gradient of the arcs between two discs
-// is 1/√(1 − d²/4), d² = 2/√3 on the hexagonal lattice that a fluid under pressure takes.
-constexpr double kShare = 0.84338;
+constexpr double kStep = 0.2;   // of √(ρ dx³/σ); a row of particles would be unstable from 1, drops are from 0.35
 constexpr double kLeast = 0.5;  // of that root: discs that part are not held for ever more strongly
 // Without it, energy that position-only corrections give to the skin, pull by pull, grows until it boils.
 constexpr double kCalm = 0.03;  // kinematic viscosity, of √(σ dx/ρ)
@@ -20,13 +17,25 @@ constexpr double kCalm = 0.03;  // kinematic viscosity, of √(σ dx/ρ)
 constexpr float kFull = 0.97f, kSkew = 0.1f;
 constexpr std::size_t kCellBlock = 128;  // cells a task
 
+// The tension of a straight row, in units of what the energy gives a length: the gradient of the arcs between two discs
+// is 1/√(1 − d²/4). d² = 2/√3 on the hexagonal lattice that a fluid under pressure takes; with Wendland's kernel rows
+// at a surface are closer, measured for supports of 2 to 4 spacings. `ratio`: unit over spacing.
+double rowShare(double ratio, kernel::Kind kernel) {
+  if (kernel == kernel::Kind::Blend) return 0.84338;
+  const double d = std::max(0.4, 1.1 - 0.6 * (ratio - 1.0)) / ratio;
+  return std::sqrt(1.0 - 0.25 * d * d);
+}
+
 }  // namespace
 
-SurfaceTension::SurfaceTension(const FluidDef& def)
+SurfaceTension::SurfaceTension(const FluidDef& def, double unit, double volume, kernel::Kind kernel)
     : tension_(def.surfaceTension),
       density_(def.density),
       spacing_(def.spacing),
       wetting_(std::cos(def.contactAngle)),
+      unit_(unit),
+      share_(rowShare(unit / def.spacing, kernel)),
+      volume_(static_cast<float>(volume)),
       filter_{def.group, def.collidesWith} {}
 
 double SurfaceTension::longestStep() const {
@@ -52,7 +61,7 @@ void SurfaceTension::find(const StepContext& context, const PairFrame& frame, co
         gather(frame, cell, i, block.near);
         std::size_t n = 0;
         if (walls.any() && walls.lambda()[i] > 0.0f) {
-          n = context.obstacles.edgesNear({x[i], y[i]}, spacing_, spacing_, filter_, {buffer.data(), buffer.size()});
+          n = context.obstacles.edgesNear({x[i], y[i]}, unit_, unit_, filter_, {buffer.data(), buffer.size()});
         }
         const std::span<const WallEdge> edges(buffer.data(), n);
         pullPairs(i, edges, block);
@@ -74,12 +83,13 @@ void SurfaceTension::findSurface(const StepContext& context, const PairFrame& fr
 }
 
 bool SurfaceTension::atSurface(const WallLayer& walls, std::uint32_t i) const {
-  float x = skewX_[i], y = skewY_[i];
+  const float lambda = walls.any() ? walls.lambda()[i] : 0.0f;
+  float x = volume_ * skewX_[i], y = volume_ * skewY_[i];
   if (walls.any()) {
     x += walls.gradientX()[i];
     y += walls.gradientY()[i];
   }
-  return filled_[i] < kFull || x * x + y * y > kSkew * kSkew;
+  return volume_ * (filled_[i] - lambda) + lambda < kFull || x * x + y * y > kSkew * kSkew;
 }
 
 // In the order of the cells, so that a rounding never depends on who asks.
@@ -127,7 +137,7 @@ void SurfaceTension::pullPairs(std::uint32_t i, std::span<const WallEdge> edges,
       if (!covered(0.5 * j.at + side * across, block.near, j.particle, edges, nullptr)) ++vertices;
     }
     if (vertices == 0) continue;
-    const Vec2 pull = kShare * vertices / std::max(half, kLeast) * along;
+    const Vec2 pull = share_ * vertices / std::max(half, kLeast) * along;
     block.pulls.push_back({i, j.particle, pull});
   }
 }
@@ -145,7 +155,7 @@ void SurfaceTension::pullWalls(std::uint32_t i, std::span<const WallEdge> edges,
       const Vec2 at = side * along - h * normal;
       if (covered(at, block.near, i, edges, &e)) continue;
       const Vec2 outward = side > 0.0 ? along : Vec2(-along);
-      block.walls.push_back({i, e.owner, wetting_ * outward - (kShare + wetting_ * h) / bound * normal, at});
+      block.walls.push_back({i, e.owner, wetting_ * outward - (share_ + wetting_ * h) / bound * normal, at});
     }
   }
 }

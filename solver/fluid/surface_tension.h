@@ -2,6 +2,7 @@
 // itself together, and where it meets a wall, the wall pulls along itself.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include <froude/base/aligned.h>
@@ -12,19 +13,23 @@
 
 namespace froude {
 
-/// The energy is σ times the perimeter of the union of discs of radius dx (half the support, so that discs meet where
-/// particles are neighbours). Its gradient are forces between the two particles at each vertex of the outline, along
-/// the line between them: momentum and moment of momentum are exact. At a wall, which hides what is behind it, the
-/// wetted length has the energy −σ cos θ, by Young's law for the contact angle θ. All of it in units of σ; lengths in
-/// spacings.
+/// The energy is σ times the perimeter of the union of discs whose radius is the kernel's unit (half the support, so
+/// that discs meet where particles are neighbours; dx but for wcsph). Its gradient are forces between the two particles
+/// at each vertex of the outline, along the line between them: momentum and moment of momentum are exact. At a wall,
+/// which hides what is behind it, the wetted length has the energy −σ cos θ, by Young's law for the contact angle θ.
+/// All of it in units of σ; lengths in kernel units.
 class SurfaceTension {
  public:
-  explicit SurfaceTension(const FluidDef& def);
+  /// unit: half the support radius of the kernel of the pair loops [m]; volume: of a particle [unit²], which multiplies
+  /// their sums.
+  SurfaceTension(const FluidDef& def, double unit, double volume, kernel::Kind kernel);
 
   /// False where σ is 0: then nothing else is to be called.
   bool any() const { return tension_ > 0.0; }
   /// Largest sub-step [s]: a share of √(ρ dx³/σ), the time of the shortest capillary waves.
   double longestStep() const;
+  /// √(σ/(ρ dx)) [m/s]: the speed of the shortest capillary waves.
+  double fastestWave() const { return std::sqrt(tension_ / (density_ * spacing_)); }
   /// The least kinematic viscosity at which an outline is calm [m²/s]; 0 where σ is 0.
   double viscosity() const;
   /// Acceleration by a pull of 1 [m/s²]: σ/(ρ dx²).
@@ -80,6 +85,9 @@ class SurfaceTension {
   void pullWalls(std::uint32_t i, std::span<const WallEdge> edges, Block& block) const;
 
   double tension_, density_, spacing_, wetting_;  // [N], [kg/m²], [m], cos θ
+  double unit_;                                   // of the kernel [m]
+  double share_;                                  // of what the energy gives a length
+  float volume_;                                  // of a particle [unit²]
   CollisionFilter filter_;
   AlignedArray<float> filled_, skewX_, skewY_, squares_, xx_, xy_, yy_;
   std::vector<Block> blocks_;

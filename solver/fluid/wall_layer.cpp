@@ -59,8 +59,8 @@ void WallLayer::build(const Obstacles& obstacles, const SoftWalls* soft, const C
   const double support = kernel::kSupport * spacing_;
   parallelFor(n, [&](std::size_t begin, std::size_t end) {
     Block& block = blocks_[begin / kBlockSize];
-    block.links.reserve(kBlockSize);  // at once, so that a splash on a wall allocates nothing
-    block.words.reserve(kBlockSize);
+    block.links.reserve(kBlockSize / 4);  // at once, so that a splash on a wall allocates next to nothing
+    block.words.reserve(kBlockSize / 4);
     block.links.clear();
     block.words.clear();
     block.films.clear();

@@ -19,19 +19,16 @@ constexpr float kLone = 0.5f;       // density below which nothing pulls at a pa
 constexpr double kMach = 0.1;       // largest speed that is to be expected, over c
 constexpr double kMostMach = 0.12;  // inside the fluid; beyond, c is raised
 constexpr double kAcoustic = 1.0;   // units/(c + v) an acoustic step; from 2 on a lattice would be unstable
-constexpr double kSoftStep = 0.5;   // of an acoustic step, where soft walls are: they answer between sub-steps
-constexpr int kMostSteps = 64;      // acoustic ones a sub-step
-constexpr float kStiffest = 1.2f;   // diagonal of div grad from which a fluid is made softer
+// Of the change of ρ' in an acoustic step, added to ρ' where a surface is tense: a drop that has drawn itself round
+// would ring for long.
+constexpr float kDamping = 0.5f;
+constexpr int kMostSteps = 64;     // acoustic ones a sub-step
+constexpr float kStiffest = 1.2f;  // diagonal of div grad from which a fluid is made softer
 // Of what densities differ from the sum over particles, taken back in an acoustic step; and at most in a sub-step.
 constexpr double kReturn = 1e-3, kMostReturn = 0.1;
 // Of S, by which a particle gives way to an uneven neighbourhood, and by which it strays: times twice the way of the
 // fastest in units, at most kMostWay.
 constexpr float kEven = 1.0f, kStray = 0.07f, kMostWay = 0.3f;
-// The start pressure: sweeps at most, times √N; their step, halved where they diverge; errors over the first one.
-constexpr double kStartSweeps = 40.0, kStartTolerance = 0.02, kDiverged = 1e2;
-constexpr float kStartStep = 0.6f, kLeastStartStep = 0.05f;
-constexpr float kProbe = 0.03f;         // way of the fastest along which its change of the rates is taken [units]
-constexpr float kInnerDiagonal = 0.5f;  // half of the largest eigenvalue of div grad inside a fluid
 
 // In [−1, 1)², from a particle's place in the order of the cells and the time: the same on any number of threads,
 // straight through or resumed.
@@ -46,14 +43,15 @@ std::array<float, 2> stray(std::size_t i, std::uint64_t time) {
 }  // namespace
 
 double acousticStepAt(const FluidDef& def, double speed) {
-  const double sound = def.compressible.soundSpeed > 0.0 ? def.compressible.soundSpeed : speed / kMach;
+  const double sound = def.compressible.soundSpeed > 0.0
+                           ? def.compressible.soundSpeed
+                           : std::max(speed, std::sqrt(def.surfaceTension / (def.density * def.spacing))) / kMach;
   return kAcoustic * supportOf(def) / kernel::kSupport / (sound + speed);
 }
 
 Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
     : ParticleFluid(def, domain, pool,
                     {kCourant, kTypicalStiffness, kLargestStiffness, 0.0, kernel::Kind::WendlandC2}) {
-  if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of wcsph; pbf and dfsph have it");
   if (!(def.compressible.support >= 2.0 && def.compressible.support <= 6.0)) {
     throw Error("the support of wcsph is 2 to 6 spacings");
   }
@@ -62,10 +60,6 @@ Wcsph::Wcsph(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
 void Wcsph::archive(Archive& a) { a.value("sound speed", soundSpeed_); }
 
 double Wcsph::acousticStep(double speed) const { return kAcoustic * unit_ / (soundSpeed_ + speed); }
-
-double Wcsph::longestSoftStep(double maxSpeed) const {
-  return soundSpeed_ > 0.0 ? kSoftStep * acousticStep(maxSpeed) : kInfinity;
-}
 
 StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound = ParticleFluid::stepBound(pool, maxSpeed, gravity);
@@ -78,10 +72,7 @@ StepBound Wcsph::stepBound(const ParticlePool& pool, double maxSpeed, double gra
 }
 
 void Wcsph::solvePressure(const StepContext& context, ParticlePool& pool, StepStats& stats) {
-  for (AlignedArray<float>* a :
-       {&excess_, &nextExcess_, &moveX_, &moveY_, &fallX_, &fallY_, &least_, &share_, &sign_}) {
-    a->resize(pool.size());
-  }
+  for (AlignedArray<float>* a : {&excess_, &nextExcess_, &least_, &share_, &sign_}) a->resize(pool.size());
   const bool fresh = soundSpeed_ == 0.0;
   findNear(context);
   findArrangement(context, nextExcess_.data(), diagonal_.data());
@@ -116,9 +107,8 @@ void Wcsph::chooseSoundSpeed(const StepContext& context, const ParticlePool& poo
     soundSpeed_ = def_.compressible.soundSpeed;
     return;
   }
-  double speed = flowSpeed_;
+  double speed = std::max(flowSpeed_, tension_.fastestWave());
   walls_.forEachLink([&](const WallLink& link) {
-    if (isSoftOwner(link.owner)) return;
     const Vec2 at(predictedX_[link.particle], predictedY_[link.particle]);
     speed =
         std::max(speed, context.obstacles.surfaceVelocityAt(link.owner, at, Vec2(link.normalX, link.normalY)).norm());
@@ -162,6 +152,7 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
       kappa_[i] = solvedX_[i] = solvedY_[i] = target_[i] = 0.0f;
     }
   });
+  if (tension_.any()) spreadTension(context, steps);
   walls_.forEachFilm([&](std::uint32_t i) { target_[i] = kNever; });
   for (const Carried& c : carried_) {  // goes its own way, without gravity, whatever others give back
     const std::uint32_t i = c.particle;
@@ -172,6 +163,22 @@ void Wcsph::start(const StepContext& context, const ParticlePool& pool, int step
   }
   findDiagonal();
   limitStiffness();
+}
+
+// All that the outline pulls is in the velocities: back out of them, and a share of it into each acoustic step.
+void Wcsph::spreadTension(const StepContext& context, int steps) {
+  const double whole = tension_.unit() * context.dt * context.dt / (steps * unit_), share = whole / steps;
+  auto give = [&](std::uint32_t i, const Vec2& pull) {
+    moveX_[i] -= static_cast<float>(whole * pull.x());
+    moveY_[i] -= static_cast<float>(whole * pull.y());
+    fallX_[i] += static_cast<float>(share * pull.x());
+    fallY_[i] += static_cast<float>(share * pull.y());
+  };
+  tension_.forEachPull([&](const SurfaceTension::Pull& p) {
+    give(p.first, p.pull);
+    give(p.second, -p.pull);
+  });
+  tension_.forEachWallPull([&](const SurfaceTension::WallPull& p) { give(p.particle, p.pull); });
 }
 
 // Of div grad, as dfsph's, with the mirror image of the fluid behind walls: (BS + 2g)² + Σ|B∇W|².
@@ -188,98 +195,6 @@ void Wcsph::findDiagonal() {
       diagonal_[i] = x * x + y * y + 0.5f * square * volume * volume * diagonal_[i];
     }
   });
-}
-
-// To `smoothY_`: by how much the rates of the densities change in an acoustic step because the particles move on with
-// the velocities that they have, −∇u:∇u; central differences along their ways. Of those at walls, which stand still in
-// it, 0.
-void Wcsph::findTurning(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  std::fill_n(smoothY_.begin(), n, 0.0f);
-  if (!arrangement_.hasSurface()) return;  // nothing gives pressures their zero: the sweeps would run off
-  const auto fastest = static_cast<float>(parallelMax(n, 0.0, [&](std::size_t begin, std::size_t end) {
-    float most = 0.0f;
-    for (std::size_t i = begin; i < end; ++i) most = std::max(most, std::hypot(moveX_[i], moveY_[i]));
-    return static_cast<double>(most);
-  }));
-  if (fastest == 0.0f) return;
-  std::fill_n(share_.begin(), n, 1.0f);
-  for (const float side : {1.0f, -1.0f}) {
-    const float way = side * kProbe / fastest * static_cast<float>(lattice::kUnitsPerSpacing);
-    for (std::size_t i = 0; i < n; ++i) {
-      nextX_[i] = lattice::sum(latticeX_[i], static_cast<std::int32_t>(std::lrintf(way * moveX_[i])));
-      nextY_[i] = lattice::sum(latticeY_[i], static_cast<std::int32_t>(std::lrintf(way * moveY_[i])));
-      excess_[i] = 0.0f;
-    }
-    latticeX_.swap(nextX_);
-    latticeY_.swap(nextY_);
-    RateLoop loop = rateLoop(moveX_.data(), moveY_.data());
-    loop.wallShare = 0.0f;
-    compress(context, loop);
-    latticeX_.swap(nextX_);
-    latticeY_.swap(nextY_);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (walls_.any() && walls_.lambda()[i] > 0.0f) continue;
-      smoothY_[i] += side * 0.5f * fastest / kProbe * excess_[i];
-    }
-  }
-}
-
-// The pressures that a fluid has which is let go: those that keep the rates of its densities as they are. Without them
-// a tank at rest would bounce for seconds. Sweeps with momentum (heavy ball, Polyak 1964) for a system of √N rows.
-void Wcsph::findStartPressure(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  const float stiffness = std::exchange(stiffness_, 1.0f), background = std::exchange(background_, 0.0f);
-  findTurning(context);
-  bool found = false;
-  for (float step = kStartStep; !found && step > kLeastStartStep; step *= 0.5f) {
-    for (std::size_t i = 0; i < n; ++i) share_[i] = step / std::max(diagonal_[i], kInnerDiagonal);
-    found = sweepStartPressure(context);
-  }
-  // Else it starts from none, and bounces.
-  const float compliance = found ? 1.0f / stiffness : 0.0f;
-  parallelFor(n, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) excess_[i] = found ? excess_[i] * compliance : 0.0f;
-  });
-  stiffness_ = stiffness;
-  background_ = background;
-  taken_ = Vec2(0.0, 0.0);
-  limitStiffness();
-}
-
-// False where it diverges.
-bool Wcsph::sweepStartPressure(const StepContext& context) {
-  const std::size_t n = grid_.size();
-  const double rows = std::sqrt(static_cast<double>(n));
-  const auto momentum = static_cast<float>(std::pow((rows - 1.0) / (rows + 1.0), 2));
-  AlignedArray<float>& last = smoothX_;
-  std::fill_n(last.begin(), n, 0.0f);
-  std::fill_n(excess_.begin(), n, 0.0f);
-  double first = 0.0;
-  for (int sweep = 0; sweep < static_cast<int>(kStartSweeps * rows); ++sweep) {
-    takePressures(false);
-    std::copy_n(fallX_.begin(), n, velocityX_.begin());
-    std::copy_n(fallY_.begin(), n, velocityY_.begin());
-    accelerate(context, forceLoop(velocityX_.data(), velocityY_.data()));
-    RateLoop loop = rateLoop(velocityX_.data(), velocityY_.data());
-    loop.wallShare = 0.0f;
-    compress(context, loop);
-    const double error = parallelSum(n, [&](std::size_t begin, std::size_t end) {
-      double part = 0.0;
-      for (std::size_t i = begin; i < end; ++i) {
-        const float before = nextExcess_[i];
-        const float gain = std::max(least_[i], excess_[i] + share_[i] * smoothY_[i]) - before;
-        excess_[i] = before + gain + momentum * (before - last[i]);
-        part += static_cast<double>(std::abs(gain));
-        last[i] = before;
-      }
-      return part;
-    });
-    if (sweep == 0) first = error;
-    if (error <= kStartTolerance * first) return true;
-    if (!(error < kDiverged * first)) return false;
-  }
-  return true;
 }
 
 // Where walls make a corner, pressures push harder and densities gain more: there the fluid is softer, or the acoustic
@@ -392,9 +307,13 @@ void Wcsph::compressAndDrift(const StepContext& context, int steps, bool last) {
   loop.newX = nextX_.data();
   loop.newY = nextY_.data();
   if (!last) {
-    loop.state = {least_.data(),  stiffness_,
-                  background_,    def_.compressible.equation == EquationOfState::Tait,
-                  change_.data(), {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()}};
+    loop.state = {least_.data(),
+                  stiffness_,
+                  background_,
+                  def_.compressible.equation == EquationOfState::Tait,
+                  tension_.any() ? kDamping : 0.0f,
+                  change_.data(),
+                  {arrangement_.xx.data(), arrangement_.xy.data(), arrangement_.yy.data()}};
   }
   compress(context, loop);
   latticeX_.swap(nextX_);
@@ -465,6 +384,6 @@ void Wcsph::giveBack() {
   });
 }
 
-std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 9 * moveX_.capacity() * sizeof(float); }
+std::size_t Wcsph::memoryBytes() const { return ParticleFluid::memoryBytes() + 5 * excess_.capacity() * sizeof(float); }
 
 }  // namespace froude

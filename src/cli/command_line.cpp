@@ -20,8 +20,8 @@ namespace {
 
 using run::UsageError;
 
-constexpr std::array<std::string_view, 9> kCommands{"run",    "check",  "explain",    "field", "batch",
-                                                    "resume", "doctor", "completion", "man"};
+constexpr std::array<std::string_view, 11> kCommands{"run",   "check", "explain", "field",      "batch", "resume",
+                                                     "chart", "bench", "doctor",  "completion", "man"};
 constexpr int kMostThreads = 1024;
 constexpr int kMostTasks = 1000000;
 constexpr double kMostMetres = 1e9;
@@ -65,9 +65,11 @@ struct Typed {
   FieldRequest field;
   DoctorRequest doctor;
   study::BatchOptions batch;
+  plan::ChartOptions chart;
+  plan::ScalingOptions scaling;
   DescribeRequest describe;
   std::vector<std::string> sets, sweeps;
-  std::string accuracy, frames, simd, layers, collect;
+  std::string accuracy, frames, simd, layers, collect, cases, models, benchmark, subjects;
   double until = 0.0;
 };
 
@@ -135,6 +137,38 @@ void addBatch(CLI::App& app, Typed& typed) {
   command.footer(std::string(kBatchFooter));
 }
 
+void addChart(CLI::App& app, Typed& typed) {
+  CLI::App& command =
+      *app.add_subcommand("chart", "measure speed against accuracy in every validation case, and draw it");
+  plan::ChartOptions& chart = typed.chart;
+  command.add_flag("--quick", chart.quick, "coarse spacings and quick points only, within three minutes");
+  command.add_option("-o", chart.folder, "the folder of points and pictures; default: out/chart")->type_name("DIR");
+  command.add_option("--cases", typed.cases, "these cases of docs/validation.md; default: all that stand on the chart")
+      ->type_name("LIST");
+  command.add_option("--models", typed.models, "these models; default: all")->type_name("LIST");
+  command.add_option("--limit", chart.limit, "give a point up whose steps take longer; default: 120")
+      ->check(seconds())
+      ->type_name("SECONDS");
+  command.add_option("--threads", chart.threads, "threads to compute with; default: all usable cores")
+      ->check(wholeNumber(1, kMostThreads))
+      ->type_name("N");
+  command.footer(std::string(kChartFooter));
+}
+
+void addBench(CLI::App& app, Typed& typed) {
+  CLI::App& command = *app.add_subcommand("bench", "measure how time and memory grow with particles and threads");
+  command.add_option("WHAT", typed.benchmark, "scaling")->type_name("")->required();
+  command.add_flag("--quick", typed.scaling.quick, "two sizes, one short run each");
+  command.add_option("-o", typed.scaling.folder, "the folder of rows and pictures; default: out/scaling")
+      ->type_name("DIR");
+  command.add_option("--subjects", typed.subjects, "of apic,bullets,dfsph,pbf,soft,wcsph; default: all")
+      ->type_name("LIST");
+  command.add_option("--limit", typed.scaling.limit, "no larger size when one took longer; default: 30")
+      ->check(seconds())
+      ->type_name("SECONDS");
+  command.footer(std::string(kBenchFooter));
+}
+
 void addDescriptions(CLI::App& app, Typed& typed) {
   CLI::App& completion = *app.add_subcommand("completion", "write the script by which a shell completes command lines");
   completion.add_option("SHELL", typed.describe.shell, "bash, zsh or fish")->type_name("")->required();
@@ -174,7 +208,10 @@ void addField(CLI::App& app, Typed& typed) {
   command.add_option("SHAPE", field.shape, "a shape: FILE.toml, SCENE.toml#BODY, FILE.csv or FILE.svg#ID")
       ->type_name("")
       ->required();
-  command.add_option("-o", field.output, "the picture to draw, .png or .svg; with --at a .csv instead of stdout")
+  command
+      .add_option("-o", field.output,
+                  "the picture to draw, .png or .svg, or a page to explore the field, .html; with --at a .csv instead "
+                  "of stdout")
       ->type_name("FILE");
   command.add_option("--at", field.points, "answer at these points: a .csv with x,y in each row, or - for stdin")
       ->type_name("POINTS.csv");
@@ -353,19 +390,42 @@ FieldRequest finishField(Typed& typed, const CLI::App& command) {
   if (points && field.points.empty()) throw UsageError("--at: the name of the table is empty");
   if (field.check && (points || command.count("-o") > 0)) throw UsageError("--check stands alone, without -o and --at");
   if (!field.check && !points && !picture)
-    throw UsageError("nothing is asked of the field; right is -o FILE.png, -o FILE.svg, --at POINTS.csv or --check");
+    throw UsageError(
+        "nothing is asked of the field; right is -o FILE.png, -o FILE.svg, -o FILE.html, --at POINTS.csv or --check");
   if (picture && !exporting::isPicture(field.output))
-    throw UsageError(fmt::format("-o {}: a picture is wanted, FILE.png or FILE.svg", field.output));
+    throw UsageError(
+        fmt::format("-o {}: a picture or a page is wanted, FILE.png, FILE.svg or FILE.html", field.output));
   if (points && !field.output.empty() && !field.output.ends_with(".csv"))
     throw UsageError(fmt::format("-o {}: with --at a table is written, FILE.csv", field.output));
   for (const char* option : {"--offset", "--show", "--width", "--band", "--cell"})
     if (!picture && command.count(option) > 0)
       throw UsageError(fmt::format("{} is for pictures, with -o FILE.png or FILE.svg", option));
+  const bool page = picture && field.output.ends_with(".html");
+  for (const char* option : {"--offset", "--show", "--width"})
+    if (page && command.count(option) > 0)
+      throw UsageError(fmt::format("{} is for pictures; a page has all layers, and curves at every distance", option));
   for (const char* option : {"--scale", "--tolerance"})
     if (command.count(option) > 0 && !scene::isDrawing(field.shape))
       throw UsageError(fmt::format("{} is for drawings, FILE.svg#ID; '{}' has its own metres", option, field.shape));
   if (command.count("--show") > 0) field.picture.layers = layersOf(typed.layers);
   return std::move(field);
+}
+
+plan::ChartOptions finishChart(Typed& typed, const CLI::App& command) {
+  if (typed.chart.folder.empty()) throw UsageError("-o: the name of the folder is empty");
+  for (const auto& [option, text, list] : {std::tuple{"--cases", &typed.cases, &typed.chart.cases},
+                                           std::tuple{"--models", &typed.models, &typed.chart.models}}) {
+    if (command.count(option) > 0) *list = CLI::detail::split(*text, ',');
+  }
+  return std::move(typed.chart);
+}
+
+plan::ScalingOptions finishBench(Typed& typed, const CLI::App& command) {
+  if (typed.benchmark != "scaling")
+    throw UsageError(fmt::format("bench {}: there is no such benchmark; there is scaling", typed.benchmark));
+  if (typed.scaling.folder.empty()) throw UsageError("-o: the name of the folder is empty");
+  if (command.count("--subjects") > 0) typed.scaling.subjects = CLI::detail::split(typed.subjects, ',');
+  return std::move(typed.scaling);
 }
 
 Request finish(Typed& typed, const CLI::App& command, const std::vector<std::string>& arguments) {
@@ -379,6 +439,8 @@ Request finish(Typed& typed, const CLI::App& command, const std::vector<std::str
   if (name == "check") return typed.check;
   if (name == "explain") return typed.explain;
   if (name == "field") return finishField(typed, command);
+  if (name == "chart") return finishChart(typed, command);
+  if (name == "bench") return finishBench(typed, command);
   if (name == "completion" || name == "man") {
     if (name == "completion") completionScript({}, typed.describe.shell);
     return typed.describe;
@@ -400,6 +462,8 @@ void build(CLI::App& app, Typed& typed) {
   addField(app, typed);
   addBatch(app, typed);
   addResume(app, typed);
+  addChart(app, typed);
+  addBench(app, typed);
   addDescriptions(app, typed);
   app.footer(
       "`froude COMMAND --help` shows an example and the exit codes of a command.\nExample:\n"

@@ -25,6 +25,24 @@ Exit codes: 0 all runs are done; 1 internal error; 2 the command line, a batch f
 written; 4 the table cannot be written; 5 some runs are not done, the table says why; 130 SIGINT and 143 SIGTERM, after
 a checkpoint of every run at work.)";
 
+inline constexpr std::string_view kChartFooter = R"(Examples:
+  froude chart --quick
+  froude chart -o out/dams --cases dam,martin_moyce --models pbf,apic
+
+Each point is one run: a case, a model, a spacing, a step. DIR/points.csv has a line for each, chart.svg, chart.png and index.html
+show time against error. What was measured by this build on this machine is not measured again, so a chart may be stopped and goes on.
+The whole of it takes hours. The last line on stdout is DIR. docs/chart.md says what is drawn.
+Exit codes: 0 done; 1 internal error; 2 the command line is wrong; 4 input or output failed;
+130 SIGINT and 143 SIGTERM, with what was measured drawn.)";
+
+inline constexpr std::string_view kBenchFooter = R"(Example:
+  froude bench scaling --quick --subjects pbf,apic
+
+Runs shipped scenes at growing numbers of particles on one thread and on all cores, in turn. DIR/scaling.csv has a row for each,
+scaling.svg and scaling.png show them; the table is on stdout, with DIR as the last line. docs/scaling.md says what was found.
+Exit codes: 0 done; 1 internal error; 2 the command line is wrong, or the build has assertions; 4 the rows or pictures
+cannot be written; 130 SIGINT and 143 SIGTERM, with what was measured.)";
+
 inline constexpr std::string_view kCompletionFooter = R"(Example:
   froude completion bash > ~/.local/share/bash-completion/completions/froude
 
@@ -60,6 +78,7 @@ Exit codes: 0 explained; 1 internal error; 2 the scene is wrong; 4 the explanati
 
 inline constexpr std::string_view kFieldFooter = R"(Example:
   froude field scenes/shapes/gear.toml -o gear.png --offset 0.05 --offset -0.05
+  froude field scenes/shapes/gear.toml -o gear.html
   froude field scenes/mill.toml#wheel --at points.csv
   froude field scenes/drawings/harbour.svg#buoy --check
 

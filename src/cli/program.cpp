@@ -24,6 +24,12 @@ using namespace run;
 
 // Runs what was asked for, one overload for each.
 struct Dispatch {
+  const Studies& studies;
+
+  int operator()(const plan::ChartOptions& r) const {
+    if (studies.chart == nullptr) throw UsageError("chart: this program was built without the validation cases");
+    return studies.chart(r);
+  }
   int operator()(const PrintRequest& r) const { return fmt::print("{}", r.text), kDone; }
   int operator()(const RunOptions& r) const { return runScene(r); }
   int operator()(const ResumeOptions& r) const { return resumeRun(r); }
@@ -33,6 +39,7 @@ struct Dispatch {
   int operator()(const study::BatchOptions& r) const { return study::runBatch(r); }
   int operator()(const ExplainRequest& r) const { return explainCommand(r.scene, r.json); }
   int operator()(const FieldRequest& r) const { return fieldCommand(r); }
+  int operator()(const plan::ScalingOptions& r) const { return plan::scalingCommand(r); }
   int operator()(const DescribeRequest& r) const {
     const ProgramText program = describeProgram();
     fmt::print("{}", r.shell.empty() ? manualPage(program) : completionScript(program, r.shell));
@@ -46,9 +53,9 @@ int fail(int code, const std::string& what) {
   return code;
 }
 
-int dispatch(int argc, const char* const* argv) {
+int dispatch(int argc, const char* const* argv, const Studies& studies) {
   try {
-    return std::visit(Dispatch{}, parseCommandLine({argv, argv + argc}));
+    return std::visit(Dispatch{studies}, parseCommandLine({argv, argv + argc}));
   } catch (const scene::SceneError& e) {
     fmt::print(stderr, "{}\n", e.what());  // begins with FILE:LINE:COLUMN, so that editors find the place
     return kUsageError;
@@ -70,8 +77,8 @@ int dispatch(int argc, const char* const* argv) {
 
 }  // namespace
 
-int runProgram(int argc, const char* const* argv) {
-  const int code = dispatch(argc, argv);
+int runProgram(int argc, const char* const* argv, const Studies& studies) {
+  const int code = dispatch(argc, argv, studies);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   return fail(code == kDone ? int{kOutputError} : code, "standard output cannot be written");
 }

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "export/field_painter.h"
+#include "plan/chart_options.h"
+#include "plan/scaling.h"
 #include "run/run.h"
 #include "scene/shape_argument.h"
 #include "study/batch.h"
@@ -41,8 +43,9 @@ struct DoctorRequest {
   bool json = false;
 };
 
-using Request = std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest,
-                             FieldRequest, study::BatchOptions, DescribeRequest, DoctorRequest>;
+using Request =
+    std::variant<PrintRequest, run::RunOptions, run::ResumeOptions, CheckRequest, ExplainRequest, FieldRequest,
+                 study::BatchOptions, plan::ChartOptions, plan::ScalingOptions, DescribeRequest, DoctorRequest>;
 
 /// Reads a command line; `arguments[0]` is the program. Throws run::UsageError with what is wrong and what would be
 /// right.

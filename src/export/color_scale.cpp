@@ -112,18 +112,20 @@ std::vector<double> niceTicks(double low, double high, int wanted) {
   return ticks;
 }
 
-ColorScale colorScale(const scene::Scene& scene) {
+ColorScale colorScale(const scene::Scene& scene) { return colorScale(scene, scene.output.image.color); }
+
+ColorScale colorScale(const scene::Scene& scene, const std::string& color) {
   const double height = fluidHeight(scene), gravity = gravityScale(scene);
   const double restDensity = scene.world.fluid ? scene.world.fluid->density : 1000.0;
   ColorScale scale;
   std::string unit;
-  if (scene.output.image.color == "pressure") {
+  if (color == "pressure") {
     scale.quantity = ColorScale::Quantity::Pressure;
     const double speed = startSpeed(scene);
     const double pressure = std::max(restDensity * gravity * height, 0.5 * restDensity * speed * speed);
     scale.high = pressure > 0.0 ? roundUp(0.99 * pressure) : 1.0;
     unit = "N/m";
-  } else if (scene.output.image.color == "density") {
+  } else if (color == "density") {
     scale.quantity = ColorScale::Quantity::Density;
     scale.low = 0.9 * restDensity;
     scale.high = 1.1 * restDensity;
@@ -134,7 +136,7 @@ ColorScale colorScale(const scene::Scene& scene) {
     scale.high = speed > 0.0 ? roundUp(0.95 * speed) : 1.0;
     unit = "m/s";
   }
-  if (scene.output.image.range) {
+  if (scene.output.image.range && color == scene.output.image.color) {
     scale.low = (*scene.output.image.range)[0];
     scale.high = (*scene.output.image.range)[1];
   }

@@ -47,6 +47,8 @@ struct ColorScale {
 /// pressure 0 … ρgH; density ±10 %; H is the height of the fluid's top at the start above the domain's lower side. It
 /// depends on the scene alone, so a resumed run keeps its colours.
 ColorScale colorScale(const scene::Scene& scene);
+/// The same for another of "speed", "pressure" and "density" than the scene's; a range that the scene gives is its own.
+ColorScale colorScale(const scene::Scene& scene, const std::string& color);
 
 /// Of soft bodies: from 0 to the largest strain that their weight, their fall and their speed at the start ask for, 100
 /// % at most, or the scene's own range.

@@ -1,6 +1,5 @@
 #include "export/field_painter.h"
 
-#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include <froude/fields/offset_curve.h>
 
 #include "export/field_contours.h"
+#include "export/field_page.h"
 #include "export/field_panels.h"
 #include "export/frames.h"
 #include "export/sketch.h"
@@ -27,9 +27,6 @@ constexpr double kSmallestUnit = 0.6;  // letters stay legible in small pictures
 constexpr double kShare = 0.15;        // band against the shape's size
 constexpr int kSmallestMap = 8;        // [pixels]
 constexpr double kDark = 0.16;
-
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
 bool endsWith(const std::string& file, std::string_view ending) {
   return file.size() > ending.size() && std::string_view(file).ends_with(ending);
@@ -47,21 +44,6 @@ const char* titleOf(FieldLayer layer) {
       break;
   }
   return "Closest edge or vertex";
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
 }
 
 /// How many panels stand beside each other, and how large they are: the arrangement with the largest scale.
@@ -183,54 +165,27 @@ class Painter {
   FieldRaster raster_;
 };
 
-std::string asPng(const Painter& painter, const std::string& file) {
-  const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, painter.width(), painter.height()),
-                        cairo_surface_destroy);
-  const Context context(cairo_create(surface.get()), cairo_destroy);
-  painter.paint(context.get());
-  return pngBytes(context.get(), surface.get(), file);
-}
-
-std::string asSvg(const Painter& painter, const std::string& file, const std::string& title) {
-  std::string svg;
-  const auto append = [](void* to, const unsigned char* bytes, unsigned int count) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  {
-    const Surface surface(cairo_svg_surface_create_for_stream(append, &svg, painter.width(), painter.height()),
-                          cairo_surface_destroy);
-    cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
-    const Context context(cairo_create(surface.get()), cairo_destroy);
-    painter.paint(context.get());
-    cairo_surface_finish(surface.get());
-    const cairo_status_t status = std::max(cairo_status(context.get()), cairo_surface_status(surface.get()));
-    if (status != CAIRO_STATUS_SUCCESS)
-      throw OutputError(fmt::format("{}: cannot be drawn: {}", file, cairo_status_to_string(status)));
-  }
-  // Letters become outlines, so the words are said once more for those who search or listen.
-  const std::size_t head = svg.find("<svg");
-  const std::size_t end = head == std::string::npos ? head : svg.find('>', head);
-  if (end != std::string::npos)
-    svg.insert(end + 1,
-               fmt::format("\n<title>{}</title>\n<desc>{}</desc>", escaped(title), escaped(painter.description())));
-  return svg;
-}
-
 }  // namespace
 
-bool isPicture(const std::string& file) { return endsWith(file, ".png") || endsWith(file, ".svg"); }
+bool isPicture(const std::string& file) {
+  return endsWith(file, ".png") || endsWith(file, ".svg") || endsWith(file, ".html");
+}
 
 std::vector<std::string> drawField(const std::string& file, const Polygon& polygon, const std::string& title,
                                    const FieldPicture& picture) {
   const double usual = kShare * polygon.bounds().size().maxCoeff();
   const DistanceField field(polygon, picture.band > 0.0 ? picture.band : usual, picture.cell);
+  if (endsWith(file, ".html")) {
+    writeFieldPage(file, field, title);
+    return {};
+  }
   // Cells as they were asked for are shown. Millions of pixels are not answered by them: far too many or too large
   // ones would take hours, and the answers are exact whatever the cells.
   std::optional<DistanceField> suited;
   if (picture.band > 0.0 || picture.cell > 0.0) suited.emplace(polygon, usual);
   const Painter painter(field, suited ? *suited : field, title, picture);
-  run::writeWholeFile(file, endsWith(file, ".svg") ? asSvg(painter, file, title) : asPng(painter, file));
+  const Sheet sheet{painter.width(), painter.height(), title, painter.description()};
+  run::writeWholeFile(file, drawSheet(file, sheet, [&](cairo_t* cr) { painter.paint(cr); }));
   std::vector<std::string> remarks;
   if (picture.cell > 0.0 && field.cellSize() > 1.001 * picture.cell)
     remarks.push_back(fmt::format("cells of {:g} m would be too many and are {:.3g} m wide; right is that or more",

@@ -19,7 +19,7 @@ struct FieldPicture {
   int width = 1280;                // [pixels]
 };
 
-/// True for the files that can be drawn: names that end in .png or .svg.
+/// True for the files that can be drawn: names that end in .png or .svg, or .html for a page to explore it.
 bool isPicture(const std::string& file);
 
 /// Draws the field of `polygon` and writes beside and renames. Returns remarks, for example about an offset that is

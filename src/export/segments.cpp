@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <string_view>
 
 #include <froude/base/parallel.h>
 #include "export/frames.h"
@@ -16,6 +18,7 @@ namespace {
 constexpr std::size_t kGrowth = 8 << 20;        // of a segment in memory [bytes]
 constexpr std::size_t kIndexGrowth = 64 << 10;  // [bytes]
 constexpr double kPositionError = 1e-3;         // of the smallest length
+constexpr const char* kVertices = "vertices";
 
 /// The columns of a frame, fluid first.
 struct Columns {
@@ -171,6 +174,18 @@ void Segment::copy(const std::string& file, const FrameEntry& frame) {
   frames_.back().segment = number_;
 }
 
+// XDMF's Polyvertex without numbers of its points has no cells in ParaView, which then draws nothing.
+void Segment::save(const std::string& folder) {
+  std::size_t most = 0;
+  for (const FrameEntry& frame : frames_) most = std::max(most, frame.particles);
+  std::vector<std::uint32_t> numbers(most);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  if (H5Lexists(file_.id(), kVertices, H5P_DEFAULT) > 0) H5Ldelete(file_.id(), kVertices, H5P_DEFAULT);
+  writeColumn(file_.id(), {kVertices, "", H5T_NATIVE_UINT32, H5T_STD_U32LE, {most, 1}, numbers.data()});
+  for (FrameEntry& frame : frames_) frame.vertices = most;
+  file_.save(folder + "/" + segmentFile(number_));
+}
+
 std::vector<FrameEntry> readSegment(const std::string& folder, int segment) {
   const std::string path = folder + "/" + segmentFile(segment);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -180,9 +195,11 @@ std::vector<FrameEntry> readSegment(const std::string& folder, int segment) {
   H5G_info_t info{};
   checkHdf5(H5Gget_info(file, &info), path);
   std::vector<FrameEntry> frames;
+  const std::size_t vertices = rowsOf(file, kVertices, path);
   for (hsize_t k = 0; k < info.nlinks; ++k) {
     char name[64] = {};
     H5Lget_name_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, k, name, sizeof name, H5P_DEFAULT);
+    if (std::string_view(name) == kVertices) continue;
     const Hdf5Handle group(H5Gopen2(file, name, H5P_DEFAULT), H5Gclose, path);
     const Hdf5Handle position(H5Dopen2(group, "position", H5P_DEFAULT), H5Dclose, path);
     const Hdf5Handle space(H5Dget_space(position), H5Sclose, path);
@@ -192,7 +209,7 @@ std::vector<FrameEntry> readSegment(const std::string& folder, int segment) {
     frames.push_back({readAttribute<int>(group, "index", H5T_NATIVE_INT), segment,
                       readAttribute<double>(group, "time", H5T_NATIVE_DOUBLE), static_cast<std::size_t>(shape[0]),
                       rowsOf(group, "triangles", path), rowsOf(group, "links", path),
-                      static_cast<int>(H5Tget_size(type))});
+                      static_cast<int>(H5Tget_size(type)), vertices});
   }
   std::sort(frames.begin(), frames.end(), [](const FrameEntry& a, const FrameEntry& b) { return a.index < b.index; });
   return frames;
@@ -248,8 +265,14 @@ std::string xdmfCells(const FrameEntry& f, const XdmfCells& cells) {
 
 std::string xdmfGrid(const FrameEntry& f) {
   std::string grid = xdmfBegin(
-      f, fmt::format("        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
-                     f.particles));
+      f, fmt::format("        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{0}\" NodesPerElement=\"1\">\n"
+                     "          <DataItem ItemType=\"HyperSlab\" Dimensions=\"{0} 1\">\n"
+                     "            <DataItem Dimensions=\"3 1\" Format=\"XML\">0 1 {0}</DataItem>\n"
+                     "            <DataItem Dimensions=\"{1}\" NumberType=\"UInt\" Precision=\"4\" "
+                     "Format=\"HDF\">{2}:/{3}</DataItem>\n"
+                     "          </DataItem>\n"
+                     "        </Topology>\n",
+                     f.particles, f.vertices, segmentFile(f.segment), kVertices));
   grid += xdmfAttribute(f, "velocity", "Vector", "Float", 4);
   grid += xdmfAttribute(f, "pressure", "Scalar", "Float", 4);
   grid += xdmfAttribute(f, "density", "Scalar", "Float", 4);

@@ -18,6 +18,7 @@ struct FrameEntry {
   std::size_t particles = 0;
   std::size_t triangles = 0, links = 0;  // of soft bodies
   int positionBytes = 4;                 // of one coordinate
+  std::size_t vertices = 0;              // numbers in its closed segment's `vertices`
 };
 
 /// "frame_00012", the name of a frame's group and picture; "frames/0003.h5", a segment's file in the run's folder.
@@ -44,7 +45,8 @@ class Segment {
   void add(const World& world, int index);
   /// Takes over a frame of a closed segment as it is.
   void copy(const std::string& file, const FrameEntry& frame);
-  void save(const std::string& folder) { file_.save(folder + "/" + segmentFile(number_)); }
+  /// With `vertices` [most particles of a frame]: 0, 1, 2 …, by which XDMF numbers the points of each frame.
+  void save(const std::string& folder);
   int number() const { return number_; }
   std::size_t bytes() const { return file_.bytes(); }
   const std::vector<FrameEntry>& frames() const { return frames_; }

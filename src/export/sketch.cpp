@@ -1,11 +1,45 @@
 #include "export/sketch.h"
 
+#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "export/frames.h"
 
 namespace froude::exporting {
+namespace {
+
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Context = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+cairo_status_t append(void* to, const unsigned char* bytes, unsigned int count) {
+  static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+void expectDrawn(cairo_status_t status, const std::string& file) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw OutputError(fmt::format("{}: cannot be drawn: {}", file, cairo_status_to_string(status)));
+}
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out;
+}
+
+}  // namespace
 
 void setGrey(cairo_t* cr, double level) { cairo_set_source_rgb(cr, level, level, level); }
 
@@ -62,16 +96,37 @@ void drawScaleBar(cairo_t* cr, const ScaleBar& bar) {
   drawText(cr, lengthLabel(bar.metres), 0.5 * (bar.x + end), bar.y + 26.0 * bar.unit, 0.5);
 }
 
+std::string drawSheet(const std::string& file, const Sheet& sheet, FunctionRef<void(cairo_t*)> paint) {
+  if (!file.ends_with(".svg")) {
+    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, sheet.width, sheet.height),
+                          cairo_surface_destroy);
+    const Context context(cairo_create(surface.get()), cairo_destroy);
+    paint(context.get());
+    return pngBytes(context.get(), surface.get(), file);
+  }
+  std::string svg;
+  {
+    const Surface surface(cairo_svg_surface_create_for_stream(append, &svg, sheet.width, sheet.height),
+                          cairo_surface_destroy);
+    cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
+    const Context context(cairo_create(surface.get()), cairo_destroy);
+    paint(context.get());
+    cairo_surface_finish(surface.get());
+    expectDrawn(std::max(cairo_status(context.get()), cairo_surface_status(surface.get())), file);
+  }
+  const std::size_t head = svg.find("<svg");
+  const std::size_t end = head == std::string::npos ? head : svg.find('>', head);
+  if (end != std::string::npos)
+    svg.insert(end + 1,
+               fmt::format("\n<title>{}</title>\n<desc>{}</desc>", escaped(sheet.title), escaped(sheet.description)));
+  return svg;
+}
+
 std::string pngBytes(cairo_t* cr, cairo_surface_t* surface, const std::string& file) {
   std::string png;
-  const auto append = [](void* to, const unsigned char* bytes, unsigned int count) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(bytes), count);
-    return CAIRO_STATUS_SUCCESS;
-  };
   cairo_status_t status = cairo_status(cr);
   if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface, append, &png);
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw OutputError(fmt::format("{}: cannot be drawn: {}", file, cairo_status_to_string(status)));
+  expectDrawn(status, file);
   return png;
 }
 

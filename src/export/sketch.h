@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include <froude/base/parallel.h>
 #include "export/color_scale.h"
 
 struct _cairo;
@@ -32,6 +33,16 @@ struct ScaleBar {
   double unit;    // pixels per unit of the layout
 };
 void drawScaleBar(_cairo* cr, const ScaleBar& bar);
+
+/// A picture of its own, in pixels. Letters become outlines in SVG, so title and description are said there once more,
+/// for those who search or listen.
+struct Sheet {
+  int width = 0, height = 0;
+  std::string title, description;
+};
+/// Bytes of the picture that `paint` draws: SVG for a name that ends in .svg, else PNG. Throws OutputError, naming
+/// `file`, where Cairo failed.
+std::string drawSheet(const std::string& file, const Sheet& sheet, FunctionRef<void(_cairo*)> paint);
 
 /// Throws OutputError, naming `file`, where Cairo failed.
 std::string pngBytes(_cairo* cr, _cairo_surface* surface, const std::string& file);

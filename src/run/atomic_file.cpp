@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -61,11 +62,12 @@ void PendingFile::commit() {
   syncFolderOf(final_);
 }
 
-void writeWholeFile(const std::string& path, std::string_view contents) {
+void writeWholeFile(const std::string& path, std::span<const std::string_view> contents) {
   PendingFile pending(path);
   const int descriptor = open(pending.path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) throwOutputError(path);
-  const bool written = writeAll(descriptor, contents);
+  const bool written =
+      std::all_of(contents.begin(), contents.end(), [&](std::string_view part) { return writeAll(descriptor, part); });
   const int reason = errno;
   const bool closed = close(descriptor) == 0;
   if (!written) errno = reason;

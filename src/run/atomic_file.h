@@ -1,6 +1,7 @@
 // Whole files, written beside and renamed: a reader sees the old file or the new one, never half of one.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -28,8 +29,12 @@ class PendingFile {
   bool committed_ = false;
 };
 
-/// Writes all of `contents` to `path`. Throws exporting::OutputError and leaves the old file as it was.
-void writeWholeFile(const std::string& path, std::string_view contents);
+/// Writes all of `contents`, in one part or several, to `path`. Throws exporting::OutputError and leaves the old file
+/// as it was.
+void writeWholeFile(const std::string& path, std::span<const std::string_view> contents);
+inline void writeWholeFile(const std::string& path, std::string_view contents) {
+  writeWholeFile(path, std::span(&contents, 1));
+}
 
 /// Gives the file a second name, in place of what had that name; a file that is not there is none. On a file system
 /// without links it moves. What fails changes nothing.

@@ -69,11 +69,11 @@ std::uint64_t saveCheckpoint(const std::string& folder, World& world, GaugeSet& 
   run["record"] = toJson(record);
   writer.text("run", run.dump(-1, ' ', false, Json::error_handler_t::replace));
   archiveState(writer, world, gauges);
-  const std::string image = writer.finish();
+  const auto image = writer.finish();
   const std::string file = folder + "/" + kCheckpointName;
   keepAs(file, folder + "/" + kOlderCheckpointName);
   writeWholeFile(file, image);
-  return image.size();
+  return image[0].size() + image[1].size();
 }
 
 std::unique_ptr<Checkpoint> openCheckpoint(const std::string& folder, std::vector<std::string>& notes) {

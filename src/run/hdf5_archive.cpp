@@ -64,10 +64,10 @@ Handle elementType(std::size_t size) {
 std::string hashLine(const StateHash& hash) { return std::string(kMagic) + hash.hex() + "\n"; }
 
 // Of all behind the user block, block by block as `checkBody` reads it.
-StateHash hashOfBody(std::string_view image) {
+StateHash hashOfBody(std::string_view body) {
   StateHash hash;
-  for (std::size_t at = kUserBlock; at < image.size(); at += kHashedBlock) {
-    const std::string_view block = image.substr(at, kHashedBlock);
+  for (std::size_t at = 0; at < body.size(); at += kHashedBlock) {
+    const std::string_view block = body.substr(at, kHashedBlock);
     hash.add(block.data(), block.size());
   }
   return hash;
@@ -122,7 +122,7 @@ struct Hdf5Writer::Impl {
   Path path;
   std::string names;
   std::vector<std::uint32_t> sizes;
-  std::string values;
+  std::string values, head;
 
   void dataset(const std::string& name, const void* data, std::size_t elementSize, std::size_t count) {
     const hsize_t extent = count;
@@ -187,21 +187,21 @@ void Hdf5Writer::text(const std::string& name, const std::string& text) {
   impl_->dataset(name, text.data(), 1, text.size());
 }
 
-std::string Hdf5Writer::finish() {
+std::array<std::string_view, 2> Hdf5Writer::finish() {
   text("value_names", impl_->names);
   impl_->dataset("value_sizes", impl_->sizes.data(), sizeof(std::uint32_t), impl_->sizes.size());
   text("values", impl_->values);
   H5Fflush(impl_->file, H5F_SCOPE_LOCAL);
+  // The driver's own memory: H5Fget_file_image would make a second copy of all.
   const ssize_t size = H5Fget_file_image(impl_->file, nullptr, 0);
-  std::string image(kUserBlock, '\0');  // HDF5 hands out what follows it
-  image.resize(kUserBlock + static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
-  if (size <= 0 || H5Fget_file_image(impl_->file, image.data() + kUserBlock, static_cast<std::size_t>(size)) != size) {
+  void* handle = nullptr;
+  if (size <= 0 || H5Fget_vfd_handle(impl_->file, H5P_DEFAULT, &handle) < 0) {
     throw Error("checkpoint: HDF5 cannot hand out its file");
   }
-  impl_->file.reset(-1);
-  const std::string line = hashLine(hashOfBody(image));
-  std::copy(line.begin(), line.end(), image.begin());
-  return image;
+  const std::string_view body(*static_cast<const char* const*>(handle), static_cast<std::size_t>(size));
+  impl_->head = hashLine(hashOfBody(body));
+  impl_->head.resize(kUserBlock, '\0');
+  return {impl_->head, body};
 }
 
 struct Hdf5Reader::Impl {

@@ -1,6 +1,7 @@
 // State in an HDF5 file: groups for sections, a dataset for each array, one packed table for all that is small.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -31,8 +32,8 @@ class Hdf5Writer final : public Archive {
   void attribute(const std::string& name, const std::string& text);
   /// A text of any length as a dataset.
   void text(const std::string& name, const std::string& text);
-  /// The bytes of the file. The writer is of no further use.
-  std::string finish();
+  /// The bytes of the file, in two parts that live as long as the writer, which is of no further use.
+  std::array<std::string_view, 2> finish();
 
  private:
   struct Impl;

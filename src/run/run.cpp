@@ -69,6 +69,7 @@ void tellResult(const Scene& scene, const World& world, const RunRecord& record,
   fmt::print("state {}\n", world.stateHash());
   if (scene.output.png) fmt::print("pictures: {}/frame_*.png ({})\n", folder, record.nextFrame);
   if (scene.output.vdb) fmt::print("grids: {}/frame_*.vdb ({})\n", folder, record.nextFrame);
+  fmt::print("page: {}/index.html\n", folder);
   if (!result.film.empty()) fmt::print("film: {}\n", result.film);
   if (!result.filmNote.empty()) fmt::print(stderr, "{}\n", result.filmNote);
 }

@@ -38,9 +38,9 @@ bool isNumbered(std::string_view name, std::string_view before, std::string_view
 // What a run writes at the top of its folder; anything else is somebody's own.
 bool isRunFile(std::string_view name) {
   if (name.ends_with(kPartSuffix)) name.remove_suffix(kPartSuffix.size());
-  constexpr std::array<std::string_view, 9> kNames{
+  constexpr std::array<std::string_view, 11> kNames{
       "scene.toml", "summary.json", "checkpoint.h5", "checkpoint_before.h5", "gauges.csv", "leaks.csv",
-      "frames.h5",  "frames.xdmf",  "film.mp4"};
+      "frames.h5",  "frames.xdmf",  "film.mp4",      "player.frames",        "index.html"};
   return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || isNumbered(name, "frame_", ".png") ||
          isNumbered(name, "frame_", ".vdb");
 }

@@ -29,6 +29,7 @@ RunLoop::RunLoop(const RunFolder& folder, const scene::Scene& scene, World& worl
     }
   }
   frames_.emplace(folder.path(), scene, world, record_.nextFrame);
+  page_.emplace(folder.path(), scene, record_.nextFrame);
   lastMoment_ = lastCheckpoint_ = Clock::now();
   if (start == Start::New) takeOutput();
 }
@@ -50,7 +51,7 @@ LoopResult RunLoop::run(double end, const SessionOptions& options, RunObserver& 
     observer.update(world_.time(), liveParticles());
     if (Clock::now() - lastCheckpoint_ >= interval) {
       checkpoint();
-      writeSummary(Status::Running);
+      writeSummaryAndPage(Status::Running);
     }
   }
   return finish({Status::Done, 0, {}, {}, {}});
@@ -63,12 +64,14 @@ void RunLoop::takeOutput() {
   // A step that is longer than the interval is the frame of several times: numbers stay multiples of the interval.
   while (record_.nextFrame * scene_.output.every <= world_.time()) {
     frames_->write(world_, record_.nextFrame);
+    page_->take(world_, record_.nextFrame);
     ++record_.nextFrame;
   }
 }
 
 void RunLoop::checkpoint() {
   frames_->closeSegment();
+  page_->sync();
   if (gaugeLog_) {
     gaugeLog_->sync();
     record_.gaugeBytes = gaugeLog_->bytes();
@@ -93,7 +96,7 @@ LoopResult RunLoop::finish(LoopResult result) {
     result.filmNote = frames_->filmNote();
   }
   countWallTime();
-  writeSummary(result.status);
+  writeSummaryAndPage(result.status);
   return result;
 }
 
@@ -124,14 +127,23 @@ void RunLoop::markFailed(const std::string& reason) noexcept {
   try {
     countWallTime();
     record_.reason = reason;
-    writeSummary(Status::Failed);
+    writeSummaryAndPage(Status::Failed);
   } catch (...) {  // the disk that failed the run may fail this as well; the first error is the one to tell
   }
 }
 
-void RunLoop::writeSummary(Status status) {
-  const SummarySource source{scene_, world_, gauges_, record_, concurrency()};
-  writeWholeFile(folder_.file("summary.json"), summaryText(source, status));
+std::string RunLoop::summaryNow(Status status) const {
+  return summaryText({scene_, world_, gauges_, record_, concurrency()}, status);
+}
+
+void RunLoop::writeSummary(Status status) { writeWholeFile(folder_.file("summary.json"), summaryNow(status)); }
+
+// The page is made of the same text, and the summary that says "done" comes last.
+void RunLoop::writeSummaryAndPage(Status status) {
+  const std::string summary = summaryNow(status);
+  if (page_ && status != Status::Failed) page_->write(world_, summary);
+  writeWholeFile(folder_.file("summary.json"), summary);
+  if (page_ && status == Status::Failed) page_->write(world_, summary);  // may fail as well: the summary goes first
 }
 
 void RunLoop::countWallTime() {

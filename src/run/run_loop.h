@@ -8,6 +8,7 @@
 
 #include <froude/solver/world.h>
 #include "export/frames.h"
+#include "export/run_page.h"
 #include "run/checkpoint.h"
 #include "run/gauge_log.h"
 #include "run/gauges.h"
@@ -53,7 +54,9 @@ class RunLoop {
 
   void takeOutput();
   void checkpoint();
+  std::string summaryNow(Status status) const;
   void writeSummary(Status status);
+  void writeSummaryAndPage(Status status);
   void openLeakLog(const SessionOptions& options);
   void trace(const StepReport& report, const SessionOptions& options, RunObserver& observer);
   LoopResult finish(LoopResult result);
@@ -70,6 +73,7 @@ class RunLoop {
   std::optional<GaugeLog> gaugeLog_;
   std::optional<LeakLog> leakLog_;
   std::optional<exporting::FrameWriter> frames_;
+  std::optional<exporting::RunPage> page_;
   std::vector<std::string> rows_;
   Clock::time_point lastMoment_, lastCheckpoint_;
 };

@@ -75,7 +75,23 @@ void readCompressible(TableReader& model, CompressibleDef& def) {
                                                                                          : EquationOfState::Linear;
 }
 
-constexpr double kAlmostInviscid = 1e-5;  // [m²/s] that apic may leave out
+void refuseWhatApicLacks(TableReader& model, const FluidDef& def) {
+  if (def.surfaceTension > 0.0) {
+    model.fail("fluid",
+               "apic has no surface tension in this version, right are pbf, dfsph and wcsph, or surface_tension = 0");
+  }
+  for (const char* key : {"sweeps", "viscosity_solver"}) {
+    if (model.has(key)) model.fail(key, "a key of particle methods, right is to leave it out");
+  }
+}
+
+void readSweeps(TableReader& model, FluidDef& def) {
+  if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
+  const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
+  def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
+                        : solver == "explicit" ? ViscositySolver::Explicit
+                                               : ViscositySolver::Implicit;
+}
 
 void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) {
   std::vector<std::string> here, absent;
@@ -88,33 +104,19 @@ void readModel(TableReader& model, bool fluidUsed, Draft& draft, FluidDef& def) 
   } else {
     model.optionalNumber("spacing", spacing);
   }
-  if (model.has("sweeps")) def.sweeps = static_cast<int>(model.integer("sweeps", 1, 1000));
   const double most = def.model == "apic" ? 7.0 : 1.0;
   if (const auto courant = model.optionalNumber("courant", Range::between(0.01, most))) def.courant = *courant;
-  const std::string solver = model.word("viscosity_solver", {"auto", "explicit", "implicit"}, "auto");
-  def.viscositySolver = solver == "auto"       ? ViscositySolver::Auto
-                        : solver == "explicit" ? ViscositySolver::Explicit
-                                               : ViscositySolver::Implicit;
+  if (const auto flip = model.optionalNumber("flip", Range::between(0.0, 1.0))) {
+    if (def.model != "apic") model.fail("flip", "a key of apic, right is to leave it out");
+    def.flip = *flip;
+  }
   if (def.model == "apic") {
-    if (def.surfaceTension > 0.0) {
-      model.fail("fluid",
-                 "apic has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
-    }
-    if (def.viscosity > kAlmostInviscid) {
-      model.fail("fluid",
-                 "apic has no viscosity in this version, right are pbf, dfsph and wcsph, or a viscosity of at "
-                 "most 1e-5 m²/s, which it leaves out");
-    }
-    for (const char* key : {"sweeps", "viscosity_solver"}) {
-      if (model.has(key)) model.fail(key, "a key of particle methods, right is to leave it out");
-    }
+    refuseWhatApicLacks(model, def);
+  } else {
+    readSweeps(model, def);
   }
   if (def.model == "wcsph") {
     readCompressible(model, def.compressible);
-    if (def.surfaceTension > 0.0) {
-      model.fail("fluid",
-                 "wcsph has no surface tension in this version, right are pbf and dfsph, or surface_tension = 0");
-    }
   } else {
     for (const char* key : kCompressibleKeys) {
       if (model.has(key)) model.fail(key, "a key of wcsph alone, right is to leave it out or fluid = \"wcsph\"");
@@ -161,9 +163,9 @@ void readFluid(TableReader& root, Draft& draft) {
   if (!used && root.has("fluid"))
     draft.scene.notes.push_back("fluid: no [[fluid.block]] and no fluid emitter, so no fluid is modelled");
   TableReader model = tableOrEmpty(root, "model",
-                                   {"fluid", "spacing", "time_step", "sweeps", "courant", "viscosity_solver", "support",
-                                    "sound_speed", "density_diffusion", "artificial_viscosity", "background_pressure",
-                                    "equation_of_state", "soft_substeps", "soft_tolerance"});
+                                   {"fluid", "spacing", "time_step", "sweeps", "courant", "flip", "viscosity_solver",
+                                    "support", "sound_speed", "density_diffusion", "artificial_viscosity",
+                                    "background_pressure", "equation_of_state", "soft_substeps", "soft_tolerance"});
   readModel(model, used, draft, fluid);
   root.resolved().set("model", model.resolved());
   if (!used) return;

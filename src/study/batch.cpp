@@ -16,6 +16,7 @@
 #include "run/signals.h"
 #include "study/baseline.h"
 #include "study/batch_file.h"
+#include "study/batch_page.h"
 #include "study/batch_runner.h"
 #include "study/results.h"
 #include "study/slurm.h"
@@ -152,6 +153,7 @@ int endWith(int code, const BatchOptions& options, const BatchPlan& plan, const 
             const std::optional<CsvTable>& baseline) {
   tell(options, plan, results, baseline);
   writeTable(options, plan, results);
+  writeBatchPage(options.folder, plan, results);
   fmt::print("{}\n", options.folder);
   return code;
 }

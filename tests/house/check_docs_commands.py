@@ -90,11 +90,13 @@ class Judge:
             return "nothing to run"
         program = os.path.basename(words[0])
         known = {"bootstrap": self.bootstrap, "run": self.ci, "cmake": self.cmake, "ctest": self.ctest,
-                 "git": lambda w: None, "cd": lambda w: None, "apt-get": self.apt, "clang-format": lambda w: None}
+                 "git": lambda w: None, "cd": lambda w: None, "apt-get": self.apt, "npm": self.npm, "clang-format": lambda w: None}
         if program == "froude":
             return self.run_froude(words, expected)
         if program == "python3":
             return self.execute([sys.executable] + words[1:], expected)
+        if program == "node":
+            return self.missing(words[1:2])
         if program in known:
             return known[program](words)
         if program in ("validation", "dam_curve"):
@@ -102,6 +104,16 @@ class Judge:
         if program.endswith("_bench"):
             return self.missing([f"bench/{program}.cpp"] + [word for word in words[1:] if word.endswith(".toml")])
         return f"the check does not know how to judge '{words[0]}'"
+
+    def npm(self, words):
+        """`npm --prefix FOLDER ci` or `run SCRIPT`, where FOLDER has a package with that script."""
+        if words[1:2] != ["--prefix"] or len(words) < 4:
+            return "npm wants --prefix FOLDER and a command"
+        package = read(self.root, os.path.join(words[2], "package.json"))
+        scripts = json.loads(package)["scripts"]
+        if words[3:] == ["ci"] or (words[3] == "run" and words[4:5] and words[4] in scripts):
+            return None
+        return f"{words[2]} has no script for {' '.join(words[3:])}"
 
     def run_froude(self, words, expected):
         if not os.path.exists(self.froude):

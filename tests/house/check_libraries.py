@@ -1,6 +1,8 @@
 """README.md, THIRD_PARTY.md, cmake/packages.txt and the build name the same libraries.
 
 Usage: check_libraries.py ROOT"""
+import json
+import os
 import re
 import sys
 
@@ -10,7 +12,7 @@ from tree import read, report
 BUILD_NAMES = {
     "TBB": "oneTBB", "Eigen3": "Eigen", "hwy": "Highway", "nlohmann_json": "JSON for Modern C++", "tomlplusplus": "toml++",
     "muparser": "muParser", "cairo": "Cairo", "GTest": "GoogleTest", "benchmark": "Google Benchmark",
-    "LibXml2": "libxml2", "polyclipping": "Clipper", "box2d": "Box2D", "ccd": "libccd",
+    "LibXml2": "libxml2", "polyclipping": "Clipper", "box2d": "Box2D", "ccd": "libccd", "ZLIB": "zlib",
 }
 NOT_LIBRARIES = {"PkgConfig", "Git", "Threads", "Python3"}
 
@@ -45,15 +47,26 @@ def built_with(root):
     return {BUILD_NAMES.get(name, name) for name in names if name not in NOT_LIBRARIES}
 
 
+def in_pages(root):
+    """Libraries whose code stands in the built pages, by the names that the documents use."""
+    path = "src/export/web/package.json"
+    if not os.path.exists(os.path.join(root, path)):
+        return set()
+    names = json.loads(read(root, path))["dependencies"]
+    return {{"uplot": "uPlot"}.get(name, name) for name in names}
+
+
 def main(root):
     complaints = []
     libraries = packaged(root)
+    pages = in_pages(root)
     # Run as a process where it is installed, never linked and never installed by the bootstrap.
     processes = {"ffmpeg"}
     for path in ("README.md", "THIRD_PARTY.md"):
         listed = table(root, path)
-        complaints += [f"{path}: {name} is missing from the table of libraries" for name in sorted(set(libraries) - listed)]
-        complaints += [f"{path}: {name} is not in cmake/packages.txt" for name in sorted(listed - set(libraries) - processes)]
+        complaints += [f"{path}: {name} is missing from the table of libraries" for name in sorted((set(libraries) | pages) - listed)]
+        complaints += [f"{path}: {name} is not in cmake/packages.txt"
+                       for name in sorted(listed - set(libraries) - processes - pages)]
     licences = read(root, "THIRD_PARTY.md")
     complaints += [f"THIRD_PARTY.md: the package {package} of {name} is not named"
                    for name, package in libraries.items() if package not in licences]

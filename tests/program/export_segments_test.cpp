@@ -246,7 +246,7 @@ TEST(ExportXdmf, is_well_formed_and_points_at_what_is_there) {
     EXPECT_EQ(set.shape[0], std::stoull((*it)[1].str()));
     EXPECT_EQ(set.shape.size() == 2, (*it)[2].length() > 0);
   }
-  EXPECT_EQ(items, 3 * 6);
+  EXPECT_EQ(items, 3 * 7);  // six columns, and the numbers of the points
 }
 
 TEST(ExportXdmf, leaves_out_frames_without_particles) {

@@ -148,14 +148,16 @@ TEST(CommandLine, missing_and_surplus_arguments_are_named) {
 }
 
 TEST(CommandLine, every_help_has_an_example_and_exit_codes) {
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
+  for (const char* command :
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "bench", "doctor", "completion", "man"}) {
     const std::string help = std::get<PrintRequest>(parse({command, "--help"})).text;
     EXPECT_NE(help.find("Example"), std::string::npos) << help;
     EXPECT_NE(help.find(":\n  froude " + std::string(command)), std::string::npos) << help;
     EXPECT_NE(help.find("Exit codes: 0"), std::string::npos) << help;
   }
   const std::string help = std::get<PrintRequest>(parse({"--help"})).text;
-  for (const char* command : {"run", "check", "explain", "field", "batch", "resume", "doctor", "completion", "man"}) {
+  for (const char* command :
+       {"run", "check", "explain", "field", "batch", "resume", "chart", "bench", "doctor", "completion", "man"}) {
     EXPECT_NE(help.find(command), std::string::npos);
   }
 }
@@ -187,7 +189,7 @@ TEST(CommandLine, field_takes_all_its_options) {
 
 TEST(CommandLine, field_says_what_it_could_be_asked) {
   expectComplaint({"field", "a.toml"}, {"-o FILE.png", "--at POINTS.csv", "--check"});
-  expectComplaint({"field", "a.toml", "-o", "a.jpg"}, {"a.jpg", "FILE.png or FILE.svg"});
+  expectComplaint({"field", "a.toml", "-o", "a.jpg"}, {"a.jpg", "FILE.svg or FILE.html"});
   expectComplaint({"field", "a.toml", "-o", ".png"}, {".png"});
   expectComplaint({"field", "a.toml", "--at", "p.csv", "-o", "a.png"}, {"a.png", "FILE.csv"});
   expectComplaint({"field", "a.toml", "--at", "p.csv", "--offset", "1"}, {"--offset", "pictures"});

@@ -35,8 +35,8 @@ TEST_F(Describe, bash_completes_commands_options_values_and_files) {
   write("froude.bash", froude({"completion", "bash"}).out);
   write("dam.toml", "");
   EXPECT_EQ(shell("bash -n froude.bash"), "");
-  EXPECT_EQ(offered("froude b", 1), "batch\n");
-  EXPECT_EQ(offered("froude ch", 1), "check\n");
+  EXPECT_EQ(offered("froude b", 1), "batch bench\n");
+  EXPECT_EQ(offered("froude ch", 1), "check chart\n");
   EXPECT_EQ(offered("froude batch --s", 2), "--sweep --slurm --set --simd\n");
   EXPECT_EQ(offered("froude run d", 2), "dam.toml\n");
   EXPECT_EQ(offered("froude run --simd a", 3), "avx2 avx3\n");

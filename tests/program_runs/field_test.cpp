@@ -114,7 +114,7 @@ TEST_F(Field, what_is_wrong_ends_with_2_and_writes_nothing) {
   expectRefusal({"field", "box.toml", "--at", "points.csv", "-o", "a.csv"}, "points.csv:2:1: row");
   expectRefusal({"field", "box.toml", "--at", "absent.csv"}, "absent.csv:0:0: file: there is no such file");
   expectRefusal({"field", "absent.toml", "-o", "a.png"}, "absent.toml:0:0: file: there is no such file");
-  expectRefusal({"field", "box.toml", "-o", "a.gif"}, "FILE.png or FILE.svg");
+  expectRefusal({"field", "box.toml", "-o", "a.gif"}, "FILE.svg or FILE.html");
   expectRefusal({"field", "box.toml"}, "nothing is asked");
   EXPECT_EQ(files(""), (Words{"box.toml", "points.csv"}));
 }

@@ -117,11 +117,11 @@ TEST_F(Output, frames_are_written_as_asked) {
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const std::string& f) { return f.ends_with(".png"); }), 6);
   ASSERT_EQ(froude({"run", "s.toml", "-o", "h5", "--frames", "h5"}).code, 0);
   found = files("h5");
-  for (const char* name : {"frames.h5", "frames.xdmf", "frames/0000.h5"}) {
+  for (const char* name : {"frames.h5", "frames.xdmf", "frames/0000.h5", "player.frames", "index.html"}) {
     EXPECT_NE(std::find(found.begin(), found.end(), name), found.end()) << name;
   }
   ASSERT_EQ(froude({"run", "s.toml", "-o", "none", "--frames", "none"}).code, 0);
-  EXPECT_EQ(files("none"), (Words{"checkpoint.h5", "gauges.csv", "scene.toml", "summary.json"}));
+  EXPECT_EQ(files("none"), (Words{"checkpoint.h5", "gauges.csv", "index.html", "scene.toml", "summary.json"}));
 }
 
 TEST_F(Output, vdb_frames_are_written_dropped_by_resume_and_replaced_by_force) {
@@ -147,7 +147,7 @@ TEST_F(Output, vdb_frames_are_written_dropped_by_resume_and_replaced_by_force) {
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const std::string& f) { return f.ends_with(".vdb"); }), 6);
   EXPECT_EQ(stateHash("o"), hash);
   ASSERT_EQ(froude({"run", "s.toml", "-o", "o", "--force", "--frames", "none"}).code, 0);
-  EXPECT_EQ(files("o"), (Words{"checkpoint.h5", "gauges.csv", "scene.toml", "summary.json"}));
+  EXPECT_EQ(files("o"), (Words{"checkpoint.h5", "gauges.csv", "index.html", "scene.toml", "summary.json"}));
 }
 
 TEST_F(Output, folders_are_numbered_and_force_replaces) {

@@ -221,7 +221,7 @@ TEST(AcousticLoops, falls_totals_pressures_and_places_follow_from_what_the_loops
       RateLoop rate{c.ux.data(),    c.uy.data(),   c.excess.data(), c.ax.data(),    c.ay.data(),
                     matrices,       kVolume,       kSlope,          kDiffusion,     c.wallX.data(),
                     c.wallY.data(), c.gain.data(), kWallShare,      c.share.data(), next.data()};
-      rate.state = {least.data(), 0.3f, 0.02f, tait, pressure.data(), {xx.data(), xy.data(), yy.data()}};
+      rate.state = {least.data(), 0.3f, 0.02f, tait, 0.7f, pressure.data(), {xx.data(), xy.data(), yy.data()}};
       rate.newX = newX.data();
       rate.newY = newY.data();
       loops.rate(c.frame(), rate, 0, end);
@@ -233,7 +233,8 @@ TEST(AcousticLoops, falls_totals_pressures_and_places_follow_from_what_the_loops
         const double excess = std::max(static_cast<double>(least[i]), static_cast<double>(out.next[i]));
         EXPECT_FLOAT_EQ(next[i], static_cast<float>(excess));
         const double above = tait ? (std::pow(1.0 + excess, 7.0) - 1.0) / 7.0 : excess;
-        const double kappa = 0.3 * (above + 0.02);
+        const double gained = excess - static_cast<double>(c.excess[i]);
+        const double kappa = 0.3 * (above + 0.02 + static_cast<double>(0.7f) * gained);
         EXPECT_NEAR(pressure[i], kappa, 1e-6);
         EXPECT_NEAR(xx[i], static_cast<double>(kVolume * c.xx[i]) * kappa, 1e-7);
         EXPECT_NEAR(xy[i], static_cast<double>(kVolume * c.xy[i]) * kappa, 1e-7);

@@ -1,6 +1,8 @@
 // The grid model: transfers against their scalar twin and exact fields, water at rest over cut cells, thin events.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -179,6 +181,47 @@ TEST(Apic, a_dam_breaks_as_with_particle_methods_and_keeps_its_energy_until_it_h
   EXPECT_NEAR(totals.kinetic + totals.potential, world.ledger().energy0, 0.02 * world.ledger().energy0);
   EXPECT_LT(momentumError(world), 1e-12);
   EXPECT_EQ(world.ledger().leaks, 0u);
+}
+
+TEST(Apic, in_sub_steps_much_shorter_than_it_asks_for_a_tank_feels_its_floor_from_the_first) {
+  WorldDef def = apicWorld({{0.0, 0.0}, {0.4, 0.6}}, 0.02);
+  def.timeStep = 0.0005;
+  World world(def);
+  fill(world, {{0.0, 0.0}, {0.4, 0.4}}, 0.02);
+  for (int k = 0; k < 40; ++k) {
+    ASSERT_TRUE(world.substep().ok());
+    EXPECT_LT(world.totals().maxSpeed, 4.0 * 9.81 * def.timeStep.value()) << "after " << k << " sub-steps";
+  }
+}
+
+// Velocities without any pattern: four particles share a grid value, which keeps a quarter of the energy or less.
+TEST(Apic, what_the_grid_does_not_see_is_kept_by_the_share_of_flip) {
+  std::array<double, 3> kept{};
+  const std::array<double, 3> shares{0.0, 0.5, 1.0};
+  for (std::size_t s = 0; s < 3; ++s) {
+    WorldDef def = apicWorld({{0.0, 0.0}, {0.64, 0.64}}, 0.02);
+    def.domain.periodicX = def.domain.periodicY = true;
+    def.domain.closed = {false, false, false, false};
+    def.gravity = {0.0, 0.0};
+    def.timeStep = 1e-4;
+    def.fluid->flip = shares[s];
+    World world(def);
+    const std::vector<Vec2> points = testing::latticePoints(def.domain.box, 0.02);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> speed(-1.0, 1.0);
+    std::vector<Vec2> velocities;
+    for (std::size_t k = 0; k < points.size(); ++k) velocities.emplace_back(speed(random), speed(random));
+    world.addFluid(points, velocities);
+    const double before = world.totals().kinetic;
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(world.substep().ok());
+    kept[s] = world.totals().kinetic / before;
+    EXPECT_LT(momentumError(world), 1e-12);
+  }
+  EXPECT_LT(kept[0], 0.3);
+  EXPECT_LT(kept[0], kept[1]);
+  EXPECT_LT(kept[1], kept[2]);
+  EXPECT_GT(kept[2], 0.6);
+  EXPECT_LE(kept[2], 1.0);
 }
 
 TEST(Apic, what_it_cannot_do_is_refused_in_words) {

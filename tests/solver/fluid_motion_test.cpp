@@ -71,12 +71,11 @@ TEST_P(FluidInMotion, an_over_dense_start_relaxes_without_an_explosion) {
 
 TEST_P(FluidInMotion, a_start_with_half_too_many_particles_is_refused) {
   if (wcsph()) GTEST_SKIP() << "cannot hold: densities are integrated from rest, whatever the start";
-  if (apic()) GTEST_SKIP() << "cannot hold: no sub-step is undone for a density, the next one takes it back";
   World world(fluidWorld({{0.0, 0.0}, {2.0, 2.0}}, 0.02));
   fill(world, {{0.8, 0.8}, {1.2, 1.2}}, 0.016);
   const StepReport report = world.substep();
   EXPECT_EQ(report.trouble, Trouble::Compression);
-  EXPECT_GT(report.troubleValue, 0.5);
+  EXPECT_GT(report.troubleValue, apic() ? 0.3 : 0.5);  // of all of it, surfaces too
   EXPECT_EQ(world.time(), 0.0);
 }
 

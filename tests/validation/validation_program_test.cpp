@@ -128,7 +128,7 @@ TEST(ValidationRunner, a_run_that_goes_unstable_is_a_row_that_says_so) {
 }
 
 TEST(ValidationRunner, a_run_that_takes_too_long_is_given_up_and_says_so) {
-  const Outcome slow = runOnce(made("dam_speed"), "pbf", 0.1, {}, 1e-9);  // seconds: no step is as fast
+  const Outcome slow = runOnce(made("dam_speed"), "pbf", 0.1, {}, {1e-9, {}});  // seconds: no step is as fast
   EXPECT_EQ(slow.state.rfind("stopped: ", 0), 0u) << slow.state;
   EXPECT_EQ(slow.ledger.substeps, 1u);
   EXPECT_TRUE(slow.metrics.empty());

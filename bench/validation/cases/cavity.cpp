@@ -90,7 +90,9 @@ const Registered k100{
      .every = 0.02,
      .full = {{0.04, 0.02, 0.01}, {}},
      .quick = {{0.04}, {{"duration", "1.0"}}},
-     .measure = [](const scene::Scene& scene) { return measure(scene, 1); }}};
+     .measure = [](const scene::Scene& scene) { return measure(scene, 1); },
+     .flow = FlowKind::Confined,
+     .norm = {"u_rms", "v_rms"}}};
 
 const Registered k400{{.name = "cavity_400",
                        .measures = "the same at Re = 400, 40 L/U",
@@ -98,7 +100,9 @@ const Registered k400{{.name = "cavity_400",
                        .every = 0.02,
                        .full = {{0.04, 0.02, 0.01}, {{"fluid.viscosity", "0.0025"}, {"duration", "40.0"}}},
                        .quick = {{0.04}, {{"fluid.viscosity", "0.0025"}, {"duration", "1.0"}}},
-                       .measure = [](const scene::Scene& scene) { return measure(scene, 3); }}};
+                       .measure = [](const scene::Scene& scene) { return measure(scene, 3); },
+                       .flow = FlowKind::Confined,
+                       .norm = {"u_rms", "v_rms"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -72,7 +72,9 @@ const Registered kCase{{.name = "couette",
                         .full = {{0.05, 0.025, 0.0125}, {}},
                         .quick = {{0.05}, {{"duration", "1.0"}}},
                         .measure = [](const scene::Scene& scene) { return std::make_unique<Ring>(scene); },
-                        .prepare = fillWithCircles}};
+                        .prepare = fillWithCircles,
+                        .flow = FlowKind::Confined,
+                        .norm = {"profile"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -48,7 +48,9 @@ const Registered kCase{{.name = "dam",
                         .every = 0.02,
                         .full = {{0.04, 0.02, 0.01}, {{"duration", "5.0"}}},
                         .quick = {{0.05}, {{"duration", "1.0"}}},
-                        .measure = [](const scene::Scene&) { return std::make_unique<Dam>(); }}};
+                        .measure = [](const scene::Scene&) { return std::make_unique<Dam>(); },
+                        .flow = FlowKind::Splash,
+                        .norm = {"toe", "centre"}}};
 
 }  // namespace
 }  // namespace froude::validation

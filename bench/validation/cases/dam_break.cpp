@@ -54,11 +54,14 @@ const Registered kMartinMoyce{
      .every = 0.002,
      .full = {{0.0028575, 0.00142875, 0.000714375}, {}},
      .quick = {{0.0028575}, {{"duration", "0.19"}}},
-     .measure = [](const scene::Scene& scene) {
-       return std::make_unique<Column>(scene, 0.05715,
-                                       readCurve(dataPath("fluid_dambreak_martin_moyce_n2_2_front.csv"), 0, 1),
-                                       readCurve(dataPath("fluid_dambreak_martin_moyce_n2_2_height.csv"), 0, 1));
-     }}};
+     .measure =
+         [](const scene::Scene& scene) {
+           return std::make_unique<Column>(scene, 0.05715,
+                                           readCurve(dataPath("fluid_dambreak_martin_moyce_n2_2_front.csv"), 0, 1),
+                                           readCurve(dataPath("fluid_dambreak_martin_moyce_n2_2_height.csv"), 0, 1));
+         },
+     .flow = FlowKind::Splash,
+     .norm = {"front"}}};
 
 const Registered kKoshizukaOka{
     {.name = "koshizuka_oka",
@@ -69,10 +72,13 @@ const Registered kKoshizukaOka{
      .every = 0.002,
      .full = {{0.0073, 0.00365, 0.001825}, {{"duration", "0.3"}}},
      .quick = {{0.0073}, {{"duration", "0.3"}}},
-     .measure = [](const scene::Scene& scene) {
-       return std::make_unique<Column>(
-           scene, 0.146, readCurve(dataPath("fluid_dambreak_koshizuka_oka_1996.csv"), 1, 2, "exp"), Curve{});
-     }}};
+     .measure =
+         [](const scene::Scene& scene) {
+           return std::make_unique<Column>(
+               scene, 0.146, readCurve(dataPath("fluid_dambreak_koshizuka_oka_1996.csv"), 1, 2, "exp"), Curve{});
+         },
+     .flow = FlowKind::Splash,
+     .norm = {"front"}}};
 
 }  // namespace
 }  // namespace froude::validation

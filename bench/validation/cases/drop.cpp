@@ -78,7 +78,9 @@ const Registered kDrop{{.name = "drop",
                         .every = 1.0,
                         .full = {{0.05, 0.025, 0.0125}, {}},
                         .quick = {{0.1}, {}},
-                        .measure = [](const scene::Scene&) { return std::make_unique<Stretched>(); }}};
+                        .measure = [](const scene::Scene&) { return std::make_unique<Stretched>(); },
+                        .flow = FlowKind::Surface,
+                        .norm = {"axis_x", "axis_y"}}};
 
 const Registered kCentral{{.name = "central_drop",
                            .measures =
@@ -88,7 +90,9 @@ const Registered kCentral{{.name = "central_drop",
                            .every = 0.02,
                            .full = {{0.1, 0.05, 0.025}, {}},
                            .quick = {{0.1}, {{"duration", "5.0"}}},
-                           .measure = [](const scene::Scene&) { return std::make_unique<Swinging>(); }}};
+                           .measure = [](const scene::Scene&) { return std::make_unique<Swinging>(); },
+                           .flow = FlowKind::Surface,
+                           .norm = {"period"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -68,7 +68,9 @@ const Registered kCase{
      .every = 0.02,
      .full = {{0.025, 0.0125, 0.00625}, {}},
      .quick = {{0.025}, {{"duration", "1.0"}}},
-     .measure = [](const scene::Scene& scene) { return std::make_unique<Rest>(scene); }}};
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Rest>(scene); },
+     .flow = FlowKind::AtRest,
+     .norm = {"pressure_deep", "pressure_over_step", "pressure_under_lip"}}};
 
 }  // namespace
 }  // namespace froude::validation

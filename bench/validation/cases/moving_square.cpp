@@ -56,10 +56,13 @@ const Registered kCase{{.name = "moving_square",
                         .every = 0.0,
                         .full = {{0.1, 0.05, 0.025}, {}},
                         .quick = {{0.1}, {{"duration", "1.5"}}},
-                        .measure = [](const scene::Scene& scene) {
-                          const std::string file = dataPath("fluid_moving_square_re100_force.csv");
-                          return std::make_unique<Drag>(scene, readCurve(file, 0, 1), readCurve(file, 0, 2));
-                        }}};
+                        .measure =
+                            [](const scene::Scene& scene) {
+                              const std::string file = dataPath("fluid_moving_square_re100_force.csv");
+                              return std::make_unique<Drag>(scene, readCurve(file, 0, 1), readCurve(file, 0, 2));
+                            },
+                        .flow = FlowKind::Confined,
+                        .norm = {"drag"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -60,7 +60,9 @@ const Registered kPoiseuille{
      .every = 0.25,
      .full = {{0.04, 0.02, 0.01}, {}},
      .quick = {{0.04}, {{"duration", "0.5"}}},
-     .measure = measurePoiseuille}};
+     .measure = measurePoiseuille,
+     .flow = FlowKind::Confined,
+     .norm = {"profile"}}};
 
 const Registered kCouette{
     {.name = "couette_start",
@@ -69,7 +71,9 @@ const Registered kCouette{
      .every = 0.25,
      .full = {{0.04, 0.02, 0.01}, {}},
      .quick = {{0.04}, {{"duration", "0.5"}}},
-     .measure = measureCouette}};
+     .measure = measureCouette,
+     .flow = FlowKind::Confined,
+     .norm = {"profile"}}};
 
 }  // namespace
 }  // namespace froude::validation

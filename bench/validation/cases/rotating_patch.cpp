@@ -57,7 +57,9 @@ const Registered kCase{
      .every = 0.01,
      .full = {{0.04, 0.02, 0.01}, {}},
      .quick = {{0.04}, {{"duration", "0.5"}}},
-     .measure = [](const scene::Scene&) { return std::make_unique<Patch>(); }}};
+     .measure = [](const scene::Scene&) { return std::make_unique<Patch>(); },
+     .flow = FlowKind::Surface,
+     .norm = {"area"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -127,7 +127,9 @@ const Registered kCantilever{
          [](const scene::Scene& s) {
            return std::make_unique<TipAtRest>(s, Vec2(1.0, 0.0), Vec2(0.0, -0.013741), 0.02);
          },
-     .softModels = {"neo-hookean", "stvk"}}};
+     .softModels = {"neo-hookean", "stvk"},
+     .flow = FlowKind::Soft,
+     .norm = {"uy"}}};
 
 const Registered kCsm1{{.name = "csm1",
                         .measures = "where the flag comes to rest, E = 1.4e6: Turek & Hron 2006, table of CSM1",
@@ -139,7 +141,9 @@ const Registered kCsm1{{.name = "csm1",
                             [](const scene::Scene& s) {
                               return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.007187, -0.0661), 0.03);
                             },
-                        .softModels = {"stvk"}}};
+                        .softModels = {"stvk"},
+                        .flow = FlowKind::Soft,
+                        .norm = {"ux", "uy"}}};
 
 const Registered kCsm2{
     {.name = "csm2",
@@ -153,7 +157,9 @@ const Registered kCsm2{
          [](const scene::Scene& s) {
            return std::make_unique<TipAtRest>(s, Vec2(0.6, 0.2), Vec2(-0.000469, -0.01697), 0.03);
          },
-     .softModels = {"stvk"}}};
+     .softModels = {"stvk"},
+     .flow = FlowKind::Soft,
+     .norm = {"ux", "uy"}}};
 
 const Registered kCsm3{
     {.name = "csm3",
@@ -164,7 +170,9 @@ const Registered kCsm3{
      .full = {{0.02 / 3, 0.02 / 6, 0.02 / 12}, {}},
      .quick = {{0.02 / 2}, {{"duration", "1.0"}}},
      .measure = [](const scene::Scene& s) { return std::make_unique<Swing>(s); },
-     .softModels = {"stvk"}}};
+     .softModels = {"stvk"},
+     .flow = FlowKind::Soft,
+     .norm = {"period", "amplitude"}}};
 
 // Euler-Bernoulli: (1.8751041/L)² √(E'I/(ρh)), E' = E/(1 − ν²).
 const Registered kVibration{
@@ -175,7 +183,9 @@ const Registered kVibration{
      .full = {{0.1 / 3}, {{"soft.0.damping", "0.0"}, {"duration", "187.0"}}},
      .quick = {{0.1 / 3}, {{"soft.0.damping", "0.0"}, {"duration", "4.0"}}},
      .measure = [](const scene::Scene& s) { return std::make_unique<Vibration>(s, 1.867413247); },
-     .softModels = {"neo-hookean", "stvk"}}};
+     .softModels = {"neo-hookean", "stvk"},
+     .flow = FlowKind::Soft,
+     .norm = {"period"}}};
 
 // Thin plate, plane strain: (ρ g d + ρ_s g t) L⁴/(384 D), D = E t³/(12 (1 − ν²)).
 const Registered kPlate{

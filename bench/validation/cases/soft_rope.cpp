@@ -107,7 +107,9 @@ const Registered kWeight{
      .full = {{0.05, 0.025, 0.0125}, {}},
      .quick = {{0.1}, {{"duration", "1.0"}}},
      .measure = [](const scene::Scene& s) { return std::make_unique<Bent>(s, Vec2(-0.2755742675, -0.6406307174)); },
-     .softModels = {"rope"}}};
+     .softModels = {"rope"},
+     .flow = FlowKind::Soft,
+     .norm = {"back", "down"}}};
 
 // The same as triangles: plane strain, EI = E/(1 − ν²) h³/12, ν = 0.3, h = 0.05: E as for the rope, at 6.25 times the
 // weight.
@@ -123,7 +125,9 @@ const Registered kTriangles{
      .full = {{0.05 / 3, 0.05 / 6}, {{"soft", kStrip}}},
      .quick = {{0.05}, {{"soft", kStrip}, {"duration", "1.0"}}},
      .measure = [](const scene::Scene& s) { return std::make_unique<Bent>(s, Vec2(-0.2755742675, -0.6406307174)); },
-     .softModels = {"neo-hookean", "stvk"}}};
+     .softModels = {"neo-hookean", "stvk"},
+     .flow = FlowKind::Soft,
+     .norm = {"back", "down"}}};
 
 const Registered kBeads{{.name = "bead_chain",
                          .measures = "ten links of 0.2 m between points 1 m apart: exact balance of each joint",
@@ -138,7 +142,9 @@ const Registered kBeads{{.name = "bead_chain",
                                  return joints[static_cast<std::size_t>(std::lround(10.0 * s))];
                                });
                              },
-                         .softModels = {"rope"}}};
+                         .softModels = {"rope"},
+                         .flow = FlowKind::Soft,
+                         .norm = {"place"}}};
 
 const Registered kChain{{.name = "hanging_chain",
                          .measures = "a chain of length 2 between points 1 m apart: the catenary",
@@ -147,7 +153,9 @@ const Registered kChain{{.name = "hanging_chain",
                          .full = {{0.1, 0.05, 0.025}, {}},
                          .quick = {{0.1}, {{"duration", "0.5"}}},
                          .measure = [](const scene::Scene&) { return std::make_unique<Hanging>(2.0, catenary); },
-                         .softModels = {"rope"}}};
+                         .softModels = {"rope"},
+                         .flow = FlowKind::Soft,
+                         .norm = {"place"}}};
 
 const Registered kHeavy{{.name = "heavy_box",
                          .measures = "a box on a rope of a thousandth of its mass: the largest stretch of a link",
@@ -156,7 +164,9 @@ const Registered kHeavy{{.name = "heavy_box",
                          .full = {{0.02}, {}},
                          .quick = {{0.05}, {{"duration", "0.2"}}},
                          .measure = [](const scene::Scene&) { return std::make_unique<HeavyBox>(); },
-                         .softModels = {"rope"}}};
+                         .softModels = {"rope"},
+                         .flow = FlowKind::Soft,
+                         .norm = {"stretch"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -72,7 +72,9 @@ const Registered kCase{{.name = "standing_wave",
                         .every = 0.0,
                         .full = {{0.02, 0.01, 0.005}, {}},
                         .quick = {{0.02}, {{"duration", "1.8"}}},
-                        .measure = [](const scene::Scene& scene) { return std::make_unique<Wave>(scene); }}};
+                        .measure = [](const scene::Scene& scene) { return std::make_unique<Wave>(scene); },
+                        .flow = FlowKind::Surface,
+                        .norm = {"period"}}};
 
 }  // namespace
 }  // namespace froude::validation

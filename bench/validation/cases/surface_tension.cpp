@@ -114,7 +114,9 @@ const Registered kAtRest{
      .every = 0.02,
      .full = {{0.05, 0.025, 0.0125}, {}},
      .quick = {{0.05}, {}},
-     .measure = [](const scene::Scene& scene) { return std::make_unique<AtRest>(scene); }}};
+     .measure = [](const scene::Scene& scene) { return std::make_unique<AtRest>(scene); },
+     .flow = FlowKind::Surface,
+     .norm = {"pressure"}}};
 
 const Registered kOscillating{{.name = "oscillating_drop",
                                .measures = "mean period of the second mode over that of ω² = 6σ/(ρR³); amplitude lost "
@@ -124,7 +126,9 @@ const Registered kOscillating{{.name = "oscillating_drop",
                                .every = 0.01,
                                .full = {{0.05, 0.025, 0.0125}, {}},
                                .quick = {{0.05}, {}},
-                               .measure = [](const scene::Scene&) { return std::make_unique<Oscillating>(); }}};
+                               .measure = [](const scene::Scene&) { return std::make_unique<Oscillating>(); },
+                               .flow = FlowKind::Surface,
+                               .norm = {"period"}}};
 
 const Registered kWetting{
     {.name = "contact_angle",

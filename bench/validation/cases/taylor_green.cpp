@@ -44,7 +44,21 @@ const Registered kPeriodic{
      .every = kReadEvery,
      .full = {{0.04, 0.02, 0.01}, {}},
      .quick = {{0.04}, {{"duration", "0.3"}}},
-     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); }}};
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); },
+     .flow = FlowKind::Confined,
+     .norm = {"velocity"}}};
+
+// 1000 ln 10/(16 π²) s.
+const Registered kPeriodic1000{
+    {.name = "taylor_green_1000",
+     .measures = "the same at Re = 1000, where the flow is unstable",
+     .scene = "taylor_green",
+     .every = kReadEvery,
+     .full = {{0.04, 0.02, 0.01}, {{"fluid.viscosity", "0.001"}, {"duration", "14.58129"}}},
+     .quick = {{0.04}, {{"fluid.viscosity", "0.001"}, {"duration", "0.3"}}},
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreen); },
+     .flow = FlowKind::Confined,
+     .norm = {"velocity"}}};
 
 const Registered kBox{
     {.name = "taylor_green_box",
@@ -53,7 +67,9 @@ const Registered kBox{
      .every = kReadEvery,
      .full = {{0.02, 0.01, 0.005}, {}},
      .quick = {{0.02}, {{"duration", "0.3"}}},
-     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreenBox); }}};
+     .measure = [](const scene::Scene& scene) { return std::make_unique<Decay>(scene, taylorGreenBox); },
+     .flow = FlowKind::Confined,
+     .norm = {"velocity"}}};
 
 }  // namespace
 }  // namespace froude::validation

@@ -4,13 +4,17 @@
 
 #include <froude/base/error.h>
 #include <froude/base/parallel.h>
+#include <froude/solver/fluid/fluid_extent.h>
 
 namespace froude {
 namespace {
 
 constexpr double kCourant = 5.0;  // cells a sub-step
 constexpr double kMostCourant = 7.0;
-constexpr int kSmoothed = 3;  // faces to either side that a velocity is smoothed over
+// Cells of a higher Reynolds number feel no friction: what the transfers smooth out is more.
+constexpr double kMostReynolds = 1000.0;
+constexpr double kResolved = 0.0025;  // largest ν·dt/H², H the smaller extent of the fluid
+constexpr int kSmoothed = 3;          // faces to either side that a velocity is smoothed over
 constexpr std::size_t kCells = TileGrid::kCells;
 constexpr std::size_t kTileBlock = 4;  // tiles a task
 
@@ -34,7 +38,8 @@ Apic::Apic(const FluidDef& def, const DomainDef& domain, ParticlePool& pool)
       density_(pool.addColumn<float>("density", ColumnKind::State)),
       gradient_{pool.addColumn<float>("du/dx", ColumnKind::State), pool.addColumn<float>("du/dy", ColumnKind::State),
                 pool.addColumn<float>("dv/dx", ColumnKind::State), pool.addColumn<float>("dv/dy", ColumnKind::State)} {
-  if (def.surfaceTension > 0.0) throw Error("surface tension is not in this version of apic; pbf and dfsph have it");
+  if (def.surfaceTension > 0.0)
+    throw Error("surface tension is not in this version of apic; pbf, dfsph and wcsph have it");
   const Vec2 size = domain.box.size();
   if (domain.periodicX && domain.periodicY && std::abs(grid_.periodY * grid_.size - size.y()) > 1e-9 * size.y()) {
     throw Error(
@@ -46,12 +51,21 @@ double Apic::supportRadius() const { return 2.0 * def_.spacing; }
 double Apic::farthestTravel() const { return 2.0 * kMostCourant * grid_.size; }
 double Apic::particleMass() const { return def_.density * def_.spacing * def_.spacing; }
 
-StepBound Apic::stepBound(const ParticlePool&, double maxSpeed, double gravity) const {
+// Of what a cell's size sees: the fluid's speed, or that of its waves.
+double Apic::cellReynolds(double speed, double acceleration) const {
+  return grid_.size * std::max(speed, std::sqrt(acceleration * grid_.size)) / def_.viscosity;
+}
+
+StepBound Apic::stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const {
   StepBound bound;
   const double way = (def_.courant > 0.0 ? def_.courant : kCourant) * grid_.size;
   // v·dt + g·dt² = way
   const double root = std::sqrt(maxSpeed * maxSpeed + 4.0 * gravity * way);
   if (root > 0.0) bound.tighten(2.0 * way / (maxSpeed + root), StepLimit::Courant);
+  if (def_.viscosity > 0.0 && cellReynolds(maxSpeed, gravity) <= kMostReynolds) {
+    const double extent = smallerExtent(pool, domain_, def_.spacing);
+    bound.tighten(kResolved * extent * extent / def_.viscosity, StepLimit::Viscosity);
+  }
   return bound;
 }
 
@@ -64,28 +78,33 @@ void Apic::advance(const StepContext& context, ParticlePool& pool, ImpulseLedger
   }
   if (overTurned(context, stats)) return;
   sortParticles(pool);
+  cutCells(context);
   loadParticles(pool);
   findCarried(context, pool);
-  cutCells(context);
-  faces_.collect(particles_, columns(), transferLoops(context.simd));
+  faces_.collect(particles_, columns(), context.simd);
+  keepDifferences(context, pool);
   const Vec2 fall = addGravity(context, pool);
   stats.gravityImpulse += fall;
   faces_.extrapolate(1);
   const double full = grid_.size * grid_.size / (def_.spacing * def_.spacing);
-  solver_.begin(grid_, cuts_, centers_, particles_, full, faces_);
+  solver_.begin(grid_, cuts_, centers_, particles_, full, context.freeBodies, faces_);
   startPressure(context, pool);
-  stats.sweeps = solver_.project(context, def_.density, faces_).iterations;
+  stats.sweeps = rub(context);
+  const std::span<const Wrench> drag = rubbed_ ? viscosity_.drag() : std::span<const Wrench>();
+  stats.sweeps += solver_.project(context, def_.density, faces_, drag).iterations;
   if (overTurned(context, stats)) return;
   stats.sweeps += solver_.evenOut(faces_).iterations;
-  const auto [most, mean] = solver_.compression();
+  const auto [most, mean, whole] = solver_.compression();
   stats.maxCompression = most;
   stats.meanCompression = mean;
+  overFull_ = whole;
   spreadChange();
   faces_.extrapolate(1);
   holdWalls(context);
   const double farthest = context.dt * (context.maxSpeed + context.dt * context.acceleration) / grid_.size;
   faces_.extrapolate(static_cast<int>(std::ceil(std::min(farthest, 2.0 * kMostCourant))) + kSmoothed + 1);
   moveParticles(context, pool);
+  addDifferences();
   if (!context.gravity.isConstant()) addGravityWork(context, pool, stats);
   bookWalls(context, takeVelocities(pool) - fall, impulses);
   holdCarried(context, pool, impulses);
@@ -186,6 +205,23 @@ void Apic::startPressure(const StepContext& context, const ParticlePool& pool) {
   });
 }
 
+// Friction acts on velocities that are free of divergence; what it changes is kept, and the pressure asked again.
+int Apic::rub(const StepContext& context) {
+  rubbed_ = def_.viscosity > 0.0 && cellReynolds(context.maxSpeed, context.acceleration) <= kMostReynolds;
+  if (!rubbed_) return 0;
+  const int iterations = solver_.foresee(context, def_.density, faces_).iterations;
+  const int more = viscosity_.smooth(context, grid_, def_.density, def_.viscosity, solver_, faces_);
+  const TileGrid& tiles = particles_.tiles();
+  for (FaceComponent* c : {&faces_.x, &faces_.y}) {
+    parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t place = (begin + 1) * kCells; place < (end + 1) * kCells; ++place) {
+        c->value[place] -= c->change[place];
+      }
+    });
+  }
+  return iterations + more;
+}
+
 // Faces that particles reach but no pressure acts on feel what those beside them feel: a fluid's outermost layer goes
 // with it, and so does what lies along a wall; what flies alone goes straight on. A particle reaches two faces far.
 void Apic::spreadChange() {
@@ -195,10 +231,46 @@ void Apic::spreadChange() {
   for (FaceComponent* c : {&faces_.x, &faces_.y}) {
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t place = (begin + 1) * kCells; place < (end + 1) * kCells; ++place) {
-        if (c->solved[place] == 0.0f) c->value[place] += c->known[place] * c->change[place];
+        const float more = c->known[place] * c->change[place];
+        c->value[place] += c->solved[place] == 0.0f ? more : 0.0f;
       }
     });
   }
+}
+
+// FLIP: what a particle's velocity differs from the grid's by before the step, it has after it. J. U. Brackbill & H. M.
+// Ruppel, J. Comput. Phys. 65, 1986. Its way is the grid's.
+void Apic::keepDifferences(const StepContext& context, const ParticlePool& pool) {
+  if (def_.flip == 0.0) return;
+  keptX_.resize(pool.size());
+  keptY_.resize(pool.size());
+  const TileGrid& tiles = particles_.tiles();
+  const TransferLoops& loops = transferLoops(context.simd);
+  const GridParticles in = columns();
+  parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
+    TileWindow velocity;
+    for (std::size_t t = begin + 1; t <= end; ++t) {
+      if (particles_.empty(t)) continue;
+      const std::uint32_t first = particles_.start(t)[0], last = particles_.start(t)[kCells];
+      faces_.fillWindow(t, faces_.x.value, faces_.y.value, velocity);
+      loops.sample(in, velocity, first, last, keptX_.data(), keptY_.data());
+      for (std::uint32_t k = first; k < last; ++k) {
+        keptX_[k] = u_[k] - keptX_[k];
+        keptY_[k] = v_[k] - keptY_[k];
+      }
+    }
+  });
+}
+
+void Apic::addDifferences() {
+  if (def_.flip == 0.0) return;
+  const auto share = static_cast<float>(def_.flip);
+  parallelFor(keptX_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      u_[k] += share * keptX_[k];
+      v_[k] += share * keptY_[k];
+    }
+  });
 }
 
 void Apic::moveParticles(const StepContext& context, ParticlePool& pool) {
@@ -245,17 +317,21 @@ void Apic::takePressure(const StepContext& context, ParticlePool& pool) {
       tiles.loadHalo(faces_.x.solved.data(), t, solvedX);
       tiles.loadHalo(faces_.y.solved.data(), t, solvedY);
       for (std::int32_t j = 0; j < kTileSide; ++j) {
+        std::array<float, kTileSide> alongX, alongY;
+        auto means = [&](const TileHalo& change, const TileHalo& solved, int di, int dj, float* to) {
+          const float *here = solved.row(j), *there = solved.row(j + dj) + di;
+          const float *own = change.row(j), *next = change.row(j + dj) + di;
+          for (std::int32_t i = 0; i < kTileSide; ++i) {
+            const float count = here[i] + there[i], sum = here[i] * own[i] + there[i] * next[i];
+            to[i] = -size * rate * (count > 0.0f ? sum / (count > 0.0f ? count : 1.0f) : 0.0f);
+          }
+        };
+        means(changeX, solvedX, 1, 0, alongX.data());
+        means(changeY, solvedY, 0, 1, alongY.data());
         for (std::int32_t i = 0; i < kTileSide; ++i) {
           const std::int32_t c = j * kTileSide + i;
           if (start[c] == start[c + 1]) continue;
-          auto mean = [&](const TileHalo& change, const TileHalo& solved, int di, int dj) {
-            const float count = solved.value(i, j) + solved.value(i + di, j + dj);
-            const float sum =
-                solved.value(i, j) * change.value(i, j) + solved.value(i + di, j + dj) * change.value(i + di, j + dj);
-            return count > 0.0f ? sum / count : 0.0f;
-          };
-          const float gx = -size * rate * mean(changeX, solvedX, 1, 0),
-                      gy = -size * rate * mean(changeY, solvedY, 0, 1);
+          const float gx = alongX[static_cast<std::size_t>(i)], gy = alongY[static_cast<std::size_t>(i)];
           const float base = unit * q[t * kCells + static_cast<std::size_t>(c)];
           const auto middleX = static_cast<float>(i) + 0.5f, middleY = static_cast<float>(j) + 0.5f;
           for (std::uint32_t k = start[c]; k < start[c + 1]; ++k) {
@@ -325,8 +401,8 @@ void Apic::findCarried(const StepContext& context, const ParticlePool& pool) {
 }
 
 std::size_t Apic::memoryBytes() const {
-  return faces_.memoryBytes() + particles_.memoryBytes() + solver_.memoryBytes() + cuts_.memoryBytes() +
-         10 * x_.capacity() * sizeof(float);
+  return faces_.memoryBytes() + particles_.memoryBytes() + solver_.memoryBytes() + viscosity_.memoryBytes() +
+         cuts_.memoryBytes() + 10 * x_.capacity() * sizeof(float);
 }
 
 }  // namespace froude

@@ -8,6 +8,7 @@
 #include <froude/solver/coupling/contact_log.h>
 #include <froude/solver/fluid/fluid_model.h>
 #include <froude/solver/fluid/grid/grid_pressure.h>
+#include <froude/solver/fluid/grid/grid_viscosity.h>
 
 namespace froude {
 
@@ -19,7 +20,8 @@ class Apic final : public FluidModel {
 
   double supportRadius() const override;
   double farthestTravel() const override;
-  bool undoesCompression() const override { return false; }
+  /// Of the fluid as a whole: where drops meet blocks are over-full for a few sub-steps, however short those are.
+  double judgedCompression(const StepStats&) const override { return overFull_; }
   double particleMass() const override;
   StepBound stepBound(const ParticlePool& pool, double maxSpeed, double gravity) const override;
   void advance(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats) override;
@@ -35,8 +37,15 @@ class Apic final : public FluidModel {
   Vec2 takeVelocities(ParticlePool& pool) const;
   void holdCarried(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses);
   void startPressure(const StepContext& context, const ParticlePool& pool);
+  double cellReynolds(double speed, double acceleration) const;
+  int rub(const StepContext& context);
   void spreadChange();
+  Obstacles::Distance wallBehind(const Obstacles& obstacles, const Vec2& at) const;
   void holdWalls(const StepContext& context);
+  float heldBySticking(const FaceComponent& c, std::size_t place, int axis, const Obstacles::Distance& wall,
+                       const Vec2& surface, float without) const;
+  void keepDifferences(const StepContext& context, const ParticlePool& pool);
+  void addDifferences();
   void moveParticles(const StepContext& context, ParticlePool& pool);
   void meetWalls(const StepContext& context, ParticlePool& pool, ImpulseLedger& impulses, StepStats& stats);
   void bookWalls(const StepContext& context, const Vec2& gained, ImpulseLedger& impulses);
@@ -56,20 +65,19 @@ class Apic final : public FluidModel {
   ParticleTiles particles_;
   FaceField faces_;
   GridPressure solver_;
+  GridViscosity viscosity_;
+  double overFull_ = 0.0;  // density of all cells of fluid together, less 1
+  bool rubbed_ = false;    // in this sub-step
   // Scratch of a sub-step, by index.
   AlignedArray<float> x_, y_, u_, v_, dx_, dy_;  // [cells] and [m/s]
   std::array<AlignedArray<float>, 4> gradientScratch_;
+  AlignedArray<float> keptX_, keptY_;  // of what FLIP keeps, by particle [m/s]
   struct Carried {
     std::uint32_t particle;
     Vec2 velocity;  // [m/s]
   };
-  std::vector<Carried> carried_;  // by a nozzle
-  struct Kept {
-    int body;
-    Vec2 at, impulse, surface;  // [m], on the body [kg/s], velocity of its surface [m/s]
-  };
-  std::vector<std::vector<Kept>> kept_;  // by walls, of what stands at closed faces; by block of tiles
-  AlignedArray<float> heldX_, heldY_;    // by face [m/s]
+  std::vector<Carried> carried_;       // by a nozzle
+  AlignedArray<float> heldX_, heldY_;  // by face [m/s]
   ContactLog contacts_;
   std::vector<std::uint32_t> crushed_;
   std::vector<std::vector<ParticleLeak>> leaks_;

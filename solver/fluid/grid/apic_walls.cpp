@@ -1,4 +1,7 @@
 // What the grid model has to do with polygons and walls: cut cells, faces behind walls, paths, and what is booked.
+#include <algorithm>
+#include <array>
+
 #include <froude/base/parallel.h>
 #include <froude/solver/coupling/leak_check.h>
 #include <froude/solver/fluid/grid/apic.h>
@@ -46,11 +49,41 @@ void Apic::cutCells(const StepContext& context) {
   cuts_.update(range, outlines_);
 }
 
+// Friction holds at the wall what slides: behind it the slip of the next face before it goes on, with the other sign.
+float Apic::heldBySticking(const FaceComponent& c, std::size_t place, int axis, const Obstacles::Distance& wall,
+                           const Vec2& surface, float without) const {
+  const int towards = std::abs(wall.normal.x()) > std::abs(wall.normal.y()) ? 0 : 1;
+  const int step = wall.normal[towards] > 0.0 ? 1 : -1;
+  const auto [i, j] = particles_.tiles().cell(place);
+  const std::size_t before = particles_.tiles().place(i + (towards == 0 ? step : 0), j + (towards == 1 ? step : 0));
+  const double depth = std::max(0.0, -wall.distance) / grid_.size;
+  const double height = std::abs(wall.normal[towards]) - depth;
+  const bool reaches = c.open[before] > 0.0f && c.known[before] > 0.0f && height > 0.0;
+  const double share = reaches && depth < height ? depth / height : 1.0;
+  const double along = 1.0 - wall.normal[axis] * wall.normal[axis];
+  const double fluid = static_cast<double>(reaches ? c.value[before] : c.value[place]);
+  return without - static_cast<float>(along * (static_cast<double>(c.value[place]) - surface[axis]) +
+                                      share * along * (fluid - surface[axis]));
+}
+
+// Deep behind a side of the domain nothing else matters, and a query would go through all polygons.
+Obstacles::Distance Apic::wallBehind(const Obstacles& obstacles, const Vec2& at) const {
+  const Box& box = domain_.box;
+  const std::array<double, 4> depth{box.min.x() - at.x(), at.x() - box.max.x(), box.min.y() - at.y(),
+                                    at.y() - box.max.y()};
+  const std::array<Vec2, 4> inwards{Vec2(1.0, 0.0), Vec2(-1.0, 0.0), Vec2(0.0, 1.0), Vec2(0.0, -1.0)};
+  const auto deepest = static_cast<std::size_t>(std::max_element(depth.begin(), depth.end()) - depth.begin());
+  const std::size_t across = deepest < 2 ? 2 : 0;
+  const bool corner = depth[across] > 0.0 || depth[across + 1] > 0.0;
+  if (!domain_.closed[deepest] || corner || depth[deepest] < 2.0 * grid_.size) return obstacles.distance(at, filter());
+  return {-depth[deepest], inwards[deepest], -1};
+}
+
 // What is behind a wall goes along it: its velocity loses the normal part that is not the wall's.
 void Apic::holdWalls(const StepContext& context) {
   const TileGrid& tiles = particles_.tiles();
   auto hold = [&](FaceComponent& c, const FaceComponent& other, int axis, AlignedArray<float>& held) {
-    held.resize(tiles.values());
+    tiles.fit(held);
     parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin + 1; t <= end; ++t) {
         TileHalo value, known;
@@ -61,7 +94,7 @@ void Apic::holdWalls(const StepContext& context) {
           if (c.open[place] > 0.0f || c.known[place] == 0.0f) continue;
           const auto [i, j] = tiles.cell(place);
           const Vec2 at = grid_.origin + grid_.size * (axis == 0 ? Vec2(i, j + 0.5) : Vec2(i + 0.5, j));
-          const Obstacles::Distance wall = context.obstacles.distance(at, filter());
+          const Obstacles::Distance wall = wallBehind(context.obstacles, at);
           if (!(wall.distance < kInfinity)) continue;
           if (!loaded) {
             tiles.loadHalo(other.value.data(), t, value);
@@ -82,19 +115,13 @@ void Apic::holdWalls(const StepContext& context) {
           v[1 - axis] = count > 0.0f ? static_cast<double>(sum / count) : 0.0;
           const Vec2 surface = context.obstacles.surfaceVelocityAt(wall.body, at, wall.normal);
           held[place] = static_cast<float>(v[axis] - wall.normal[axis] * (v - surface).dot(wall.normal));
-          if (c.weight[place] == 0.0f) continue;
-          // Pressure is that of the cell's middle; what lies between there and the wall hangs on the closed faces.
-          const float given = held[place] - (c.value[place] - (c.solved[place] == 0.0f ? c.change[place] : 0.0f));
-          Vec2 impulse(0.0, 0.0);
-          impulse[axis] = -particleMass() * static_cast<double>(c.weight[place] * given);
-          kept_[begin / kTileBlock].push_back({wall.body, at, impulse, surface});
+          if (rubbed_ && context.obstacles.sticks(wall.body)) {
+            held[place] = heldBySticking(c, place, axis, wall, surface, held[place]);
+          }
         }
       }
     });
   };
-  const std::size_t blocks = blockCount(tiles.size(), kTileBlock);
-  if (kept_.size() < blocks) kept_.resize(blocks);
-  for (std::vector<Kept>& block : kept_) block.clear();
   hold(faces_.x, faces_.y, 0, heldX_);
   hold(faces_.y, faces_.x, 1, heldY_);
   std::copy_n(heldX_.data(), tiles.values(), faces_.x.value.data());
@@ -116,7 +143,10 @@ void Apic::meetWalls(const StepContext& context, ParticlePool& pool, ImpulseLedg
   parallelFor(pool.size(), [&](std::size_t begin, std::size_t end) {
     forEachWithin(context.obstacles, x, y, begin, end, travel, [&](std::size_t k) {
       const Vec2 at(x[k], y[k]), way = size * Vec2(static_cast<double>(dx_[k]), static_cast<double>(dy_[k]));
-      if (context.obstacles.freeDistance(at, point.filter) > way.norm()) return;
+      // What is free around its start, and around its end: most go along a wall, not into it.
+      const double length = way.norm(), free = context.obstacles.clearance(at);
+      if (free > length) return;
+      if (free > 0.0 && domain_.box.contains(at + way) && free + context.obstacles.clearance(at + way) > length) return;
       PathResult path;
       followPath(context.obstacles, at, way / dt, dt, point, path);
       if (path.contacts > 0) {
@@ -166,12 +196,7 @@ void Apic::bookWalls(const StepContext& context, const Vec2& gained, ImpulseLedg
     impulses.add(wall.body, at, impulse, context.obstacles.velocityAt(wall.body, at));
     rest -= impulse;
   });
-  for (const std::vector<Kept>& block : kept_) {
-    for (const Kept& k : block) {
-      impulses.add(k.body, k.at, k.impulse, k.surface);
-      rest -= k.impulse;
-    }
-  }
+  if (rubbed_) viscosity_.book(impulses, rest);
   impulses.add(-1, domain_.box.center(), rest, Vec2(0.0, 0.0));
 }
 

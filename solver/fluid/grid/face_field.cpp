@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <froude/base/crew.h>
 #include <froude/base/parallel.h>
 
 namespace froude {
@@ -9,7 +10,21 @@ namespace {
 
 constexpr std::int32_t kSide = TileGrid::kSide;
 constexpr std::size_t kCells = TileGrid::kCells;
-constexpr std::size_t kTileBlock = 4;  // tiles a task
+constexpr std::size_t kTileBlock = 4;     // tiles a task
+constexpr std::size_t kFrontBlock = 32;   // tiles a task of a layer
+constexpr std::size_t kUsefulTiles = 64;  // below, one thread goes through layers quicker
+// How much of a tile is known.
+constexpr std::uint8_t kNothing = 0, kPart = 1, kAll = 2;
+
+std::uint8_t extentOf(const std::uint16_t* rows, const TileLinks& link) {
+  const std::uint32_t columns = (2u << link.lane) - 1u;
+  std::uint32_t some = 0, all = columns;
+  for (std::int32_t j = 0; j < link.rows; ++j) {
+    some |= rows[j];
+    all &= rows[j];
+  }
+  return some == 0 ? kNothing : all == columns ? kAll : kPart;
+}
 
 void forEachTile(const TileGrid& tiles, FunctionRef<void(std::size_t)> visit) {
   parallelFor(tiles.size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
@@ -52,14 +67,17 @@ void joinSums(const TileGrid& tiles, std::size_t t, const SumsOf& sumsOf, float*
 
 }  // namespace
 
-void FaceField::collect(const ParticleTiles& particles, const GridParticles& columns, const TransferLoops& loops) {
+void FaceField::collect(const ParticleTiles& particles, const GridParticles& columns, SimdTarget simd) {
   tiles_ = &particles.tiles();
+  simd_ = simd;
+  const TransferLoops& loops = transferLoops(simd);
+  linkTiles(*tiles_, links_);
   const TileGrid& tiles = *tiles_;
   for (FaceComponent* c : {&x, &y}) {
     for (AlignedArray<float>* field : {&c->weight, &c->value, &c->change, &c->shift, &c->open, &c->solved, &c->known})
-      tiles.clear(*field);
+      tiles.fit(*field);
   }
-  tiles.clear(node);
+  tiles.fit(node);
   sumsOf_.assign(tiles.size() + 1, 0);
   std::uint32_t count = 0;
   for (std::size_t t = 1; t <= tiles.size(); ++t) {
@@ -81,6 +99,8 @@ void FaceField::collect(const ParticleTiles& particles, const GridParticles& col
     join(&TileSums::vSum, y.value.data() + at);
     join(&TileSums::node, node.data() + at);
     for (FaceComponent* c : {&x, &y}) {
+      for (AlignedArray<float>* field : {&c->change, &c->shift, &c->solved})
+        std::fill_n(field->data() + at, kCells, 0.0f);
       for (std::size_t k = at; k < at + kCells; ++k) {
         const bool any = c->weight[k] > 0.0f;
         c->value[k] = any ? c->value[k] / c->weight[k] : 0.0f;
@@ -100,54 +120,76 @@ void FaceField::add(float byX, float byY) {
 }
 
 void FaceField::extrapolate(int layers) {
-  for (int layer = 0; layer < layers; ++layer) {
-    extrapolateLayer(x.value, x.known);
-    extrapolateLayer(y.value, y.known);
-  }
+  start(fronts_[0], x.value, x.known, x.known.data());
+  start(fronts_[1], y.value, y.known, y.known.data());
+  goOn(layers);
 }
 
 void FaceField::spread(AlignedArray<float> FaceComponent::*field, int layers) {
-  for (FaceComponent* c : {&x, &y}) {
-    reached_.resize(tiles_->values());
-    std::copy_n(c->solved.data(), tiles_->values(), reached_.data());
-    for (int layer = 0; layer < layers; ++layer) extrapolateLayer(c->*field, reached_);
-  }
+  start(fronts_[0], x.*field, x.solved, nullptr);
+  start(fronts_[1], y.*field, y.solved, nullptr);
+  goOn(layers);
 }
 
-void FaceField::extrapolateLayer(AlignedArray<float>& values, AlignedArray<float>& knowns) {
-  const TileGrid& tiles = *tiles_;
-  nextValue_.resize(tiles.values());
-  nextKnown_.resize(tiles.values());
-  active_.assign(tiles.size() + 1, 0);
-  forEachTile(tiles, [&](std::size_t t) {
-    const float* known = knowns.data() + t * kCells;
-    bool any = false;
-    for (std::size_t k = 0; k < kCells; ++k) any = any || known[k] == 0.0f;
-    if (!any) return;
-    active_[t] = 1;
-    TileHalo value, weight;
-    tiles.loadHalo(values.data(), t, value);
-    tiles.loadHalo(knowns.data(), t, weight);
-    float* to = nextValue_.data() + t * kCells;
-    float* toKnown = nextKnown_.data() + t * kCells;
-    for (std::int32_t j = 0; j < kSide; ++j) {
-      const float *v = value.row(j), *w = weight.row(j), *vu = value.row(j + 1), *wu = weight.row(j + 1),
-                  *vd = value.row(j - 1), *wd = weight.row(j - 1);
-      for (std::int32_t i = 0; i < kSide; ++i) {
-        const float count = (w[i - 1] + w[i + 1]) + (wd[i] + wu[i]);
-        const float sum = (v[i - 1] + v[i + 1]) + (vd[i] + vu[i]);
-        const bool fresh = w[i] == 0.0f && count > 0.0f;
-        to[j * kSide + i] = fresh ? sum / count : v[i];
-        toKnown[j * kSide + i] = fresh ? 1.0f : w[i];
+void FaceField::start(Front& front, AlignedArray<float>& values, const AlignedArray<float>& known, float* reached) {
+  const std::size_t count = tiles_->size() + 1;
+  front.values = values.data();
+  front.reached = reached;
+  front.known.resize(count * kSide);
+  front.fresh.resize(count * kSide);
+  front.extent.resize(count);
+  front.moves.resize(count);
+  tiles_->fit(front.next);
+  front.extent[0] = kNothing;
+  const GridLoops& loops = gridLoops(simd_);
+  forEachTile(*tiles_, [&](std::size_t t) {
+    loops.positive(known.data(), front.known.data(), t, t + 1);
+    std::uint16_t* rows = front.known.data() + t * kSide;
+    const TileLinks& link = links_[t];
+    const auto columns = static_cast<std::uint16_t>((2u << link.lane) - 1u);
+    for (std::int32_t j = 0; j < kSide; ++j) rows[j] = j < link.rows ? rows[j] & columns : std::uint16_t{0};
+    front.extent[t] = extentOf(rows, link);
+  });
+}
+
+void FaceField::goOn(int layers) {
+  const std::size_t count = tiles_->size();
+  Crew::run(count >= kUsefulTiles, [&](Crew& crew) {
+    for (int layer = 0; layer < layers; ++layer) {
+      for (const auto step : {&FaceField::findLayer, &FaceField::takeLayer}) {
+        crew.stage(count, kFrontBlock, [&](std::size_t begin, std::size_t end) {
+          for (Front& front : fronts_) {
+            for (std::size_t t = begin + 1; t <= end; ++t) (this->*step)(front, t);
+          }
+        });
       }
     }
   });
-  forEachTile(tiles, [&](std::size_t t) {
-    if (active_[t] == 0) return;
-    const std::size_t at = t * kCells;
-    std::copy_n(nextValue_.data() + at, kCells, values.data() + at);
-    std::copy_n(nextKnown_.data() + at, kCells, knowns.data() + at);
-  });
+}
+
+void FaceField::findLayer(Front& front, std::size_t t) const {
+  const TileLinks& link = links_[t];
+  front.moves[t] = 0;
+  if (front.extent[t] == kAll) return;
+  auto beside = [&](std::uint32_t place) { return front.extent[place / kCells] != kNothing; };
+  if (front.extent[t] == kNothing && !beside(link.left) && !beside(link.right) && !beside(link.down) &&
+      !beside(link.up)) {
+    return;
+  }
+  FrontRows rows;
+  if (!findFront(front.known.data(), link, t, rows)) return;
+  front.moves[t] = 1;
+  std::copy_n(rows.fresh, kSide, front.fresh.data() + t * kSide);
+  frontLoops(simd_).means(front.values, link, rows, t, front.next.data());
+}
+
+void FaceField::takeLayer(Front& front, std::size_t t) const {
+  if (front.moves[t] == 0) return;
+  const std::uint16_t* fresh = front.fresh.data() + t * kSide;
+  frontLoops(simd_).take(front.next.data(), fresh, t, front.values, front.reached);
+  std::uint16_t* rows = front.known.data() + t * kSide;
+  for (std::int32_t j = 0; j < kSide; ++j) rows[j] = static_cast<std::uint16_t>(rows[j] | fresh[j]);
+  front.extent[t] = extentOf(rows, links_[t]);
 }
 
 void FaceField::fillWindow(std::size_t t, const AlignedArray<float>& u, const AlignedArray<float>& v,
@@ -189,8 +231,13 @@ void FaceField::fillWindow(std::size_t t, const AlignedArray<float>& u, const Al
 }
 
 std::size_t FaceField::memoryBytes() const {
-  return sums_.capacity() * sizeof(TileSums) + sumsOf_.capacity() * sizeof(std::uint32_t) +
-         (11 * node.capacity() + nextValue_.capacity() + nextKnown_.capacity()) * sizeof(float);
+  std::size_t bytes = sums_.capacity() * sizeof(TileSums) + sumsOf_.capacity() * sizeof(std::uint32_t) +
+                      15 * node.capacity() * sizeof(float) + links_.capacity() * sizeof(TileLinks);
+  for (const Front& front : fronts_) {
+    bytes += (front.known.capacity() + front.fresh.capacity()) * sizeof(std::uint16_t) + front.extent.capacity() +
+             front.moves.capacity() + front.next.capacity() * sizeof(float);
+  }
+  return bytes;
 }
 
 }  // namespace froude

@@ -1,9 +1,11 @@
 // Velocities on the faces of the fluid's tiles: what particles give, what the step makes of it, what particles take.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <froude/base/aligned.h>
+#include <froude/solver/fluid/grid/front_loops.h>
 #include <froude/solver/fluid/grid/particle_tiles.h>
 #include <froude/solver/fluid/grid/transfer.h>
 
@@ -24,7 +26,7 @@ struct FaceComponent {
 class FaceField {
  public:
   /// Weighted means of what the particles carry; where none reaches, 0 and not known.
-  void collect(const ParticleTiles& particles, const GridParticles& columns, const TransferLoops& loops);
+  void collect(const ParticleTiles& particles, const GridParticles& columns, SimdTarget simd);
   /// Adds (x, y) [m/s] to all that is known.
   void add(float x, float y);
   /// Goes outwards from the known faces by `layers` cells: means of the known neighbours.
@@ -41,13 +43,27 @@ class FaceField {
   std::size_t memoryBytes() const;
 
  private:
-  void extrapolateLayer(AlignedArray<float>& values, AlignedArray<float>& knowns);
+  // One component on its way outwards.
+  struct Front {
+    AlignedArray<std::uint16_t> known;  // by row
+    AlignedArray<std::uint16_t> fresh;
+    AlignedArray<std::uint8_t> extent;  // by tile: how much is known
+    AlignedArray<std::uint8_t> moves;   // by tile: has fresh cells
+    AlignedArray<float> next;
+    float* values = nullptr;
+    float* reached = nullptr;  // becomes 1 where the front gets; null: nobody asks
+  };
+  void start(Front& front, AlignedArray<float>& values, const AlignedArray<float>& known, float* reached);
+  void goOn(int layers);
+  void findLayer(Front& front, std::size_t t) const;
+  void takeLayer(Front& front, std::size_t t) const;
 
   const TileGrid* tiles_ = nullptr;
   AlignedArray<TileSums> sums_;
   std::vector<std::uint32_t> sumsOf_;  // by tile; 0: the zeros
-  AlignedArray<float> nextValue_, nextKnown_, reached_;
-  std::vector<std::uint8_t> active_;
+  SimdTarget simd_{};
+  AlignedArray<TileLinks> links_;
+  std::array<Front, 2> fronts_;
 };
 
 }  // namespace froude

@@ -2,7 +2,7 @@
 
 namespace froude {
 
-void GridBodies::begin(FreeBodies* bodies, double density, double size, double dt) {
+void GridBodies::begin(FreeBodies* bodies, double density, double size, double dt, std::span<const Wrench> drag) {
   bodies_ = bodies;
   density_ = density;
   size_ = size;
@@ -17,7 +17,8 @@ void GridBodies::begin(FreeBodies* bodies, double density, double size, double d
     Body& body = moving_[count_++];
     const MassData& mass = bodies->mass(owner);
     const std::optional<Vec2> arm = bodies->hingeArm(owner);
-    const Wrench had = bodies->expected(owner);
+    Wrench had = bodies->expected(owner);
+    for (std::size_t c = 0; c < 3 && !drag.empty(); ++c) had[c] -= drag[static_cast<std::size_t>(owner)][c];
     body.owner = owner;
     body.hinged = arm.has_value();
     body.arm = arm.value_or(Vec2(0.0, 0.0));
@@ -37,17 +38,17 @@ void GridBodies::begin(FreeBodies* bodies, double density, double size, double d
   }
 }
 
-double GridBodies::add(const CutWall& wall, std::uint32_t place) {
-  Body& body = moving_[static_cast<std::size_t>(indexOf_[static_cast<std::size_t>(wall.body)])];
-  const double turn = wall.moment + (body.hinged ? cross(body.arm, wall.normal) : 0.0);
-  PressureBody::Entry entry{place, {0.0f, 0.0f, static_cast<float>(turn)}};
+double GridBodies::add(int owner, const WallPressure::Share& share) {
+  Body& body = moving_[static_cast<std::size_t>(indexOf_[static_cast<std::size_t>(owner)])];
+  const double turn = share.moment + (body.hinged ? cross(body.arm, share.normal) : 0.0);
+  PressureBody::Entry entry{share.place, {0.0f, 0.0f, static_cast<float>(turn)}};
   if (!body.hinged) {
-    entry.j[0] = static_cast<float>(wall.normal.x());
-    entry.j[1] = static_cast<float>(wall.normal.y());
+    entry.j[0] = static_cast<float>(share.normal.x());
+    entry.j[1] = static_cast<float>(share.normal.y());
   }
   body.entries.push_back(entry);
-  body.walls.push_back({wall.normal.x(), wall.normal.y(), wall.moment});
-  return body.velocity.dot(wall.normal) + body.spin * wall.moment;
+  body.walls.push_back({share.normal.x(), share.normal.y(), share.moment});
+  return body.velocity.dot(share.normal) + body.spin * share.moment;
 }
 
 // κ pushes with −(ρh³/dt)·j κ, and what a body's speed changes by counts dt/h·j: together ρh²/mass.

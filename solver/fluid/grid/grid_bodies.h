@@ -10,16 +10,33 @@
 
 namespace froude {
 
+/// What a wall feels of the κ of cells: Σ normal·κ pushes it and Σ moment·κ turns it, units as those of CutWall.
+struct WallPressure {
+  struct Share {
+    std::uint32_t place = 0;
+    Vec2 normal{0, 0};
+    double moment = 0.0;
+  };
+  std::array<Share, 5> share;
+  std::size_t count = 0;
+
+  void add(std::size_t place, const Vec2& normal, double moment) {
+    share[count++] = {static_cast<std::uint32_t>(place), normal, moment};
+  }
+  std::span<const Share> shares() const { return {share.data(), count}; }
+};
+
 /// The rigid solver has moved the bodies with the pressure of the sub-step before; here that is taken back, and what
 /// the pressure is now put in its place. A hinged body has one freedom, its turn.
 class GridBodies {
  public:
-  /// Null: there are none. density [kg/m²], size of a cell [m], dt [s].
-  void begin(FreeBodies* bodies, double density, double size, double dt);
+  /// Null: there are none. density [kg/m²], size of a cell [m], dt [s]; `drag` acts on them besides, by owner, or is
+  /// empty.
+  void begin(FreeBodies* bodies, double density, double size, double dt, std::span<const Wrench> drag = {});
   bool isFree(int owner) const { return bodies_ != nullptr && bodies_->isFree(owner); }
-  /// A wall of the cell at `place`. Returns what the body's motion without any pressure pushes into the cell [of a
+  /// A wall of a cell. Returns what the body's motion without any pressure pushes into the cell of a share [of a
   /// cell's size · m/s]. Precondition: its body is free.
-  double add(const CutWall& wall, std::uint32_t place);
+  double add(int owner, const WallPressure::Share& share);
   /// For the system; good until the next `begin`.
   std::span<const PressureBody> system();
   /// Tells the bodies what pressure did and moves them; those too that the fluid has left.

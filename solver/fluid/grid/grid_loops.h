@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <froude/base/aligned.h>
 #include <froude/base/simd.h>
+#include <froude/fields/tile_grid.h>
 
 namespace froude {
 
@@ -20,6 +22,9 @@ struct TileLinks {
   std::int32_t rows = 16;
   std::int32_t first = 0, end = 0;  // rows with unknowns; only these are visited
 };
+
+/// Links of the tiles of a grid, `first` and `end` left 0; links[0] is that of the null tile.
+void linkTiles(const TileGrid& grid, AlignedArray<TileLinks>& links);
 
 /// (A x)_c = diagonal·x_c − Σ a·x_neighbour.
 struct GridOperator {

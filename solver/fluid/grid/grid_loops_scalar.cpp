@@ -152,6 +152,19 @@ void direct(const GridOperator& a, const float* z, float share, float* p, std::s
 
 }  // namespace
 
+void linkTiles(const TileGrid& grid, AlignedArray<TileLinks>& links) {
+  links.resize(grid.size() + 1);
+  links[0] = {};
+  constexpr auto kCells = static_cast<std::uint32_t>(TileGrid::kCells);
+  for (std::size_t t = 1; t <= grid.size(); ++t) {
+    const Tile& tile = grid.tile(t);
+    const auto lane = static_cast<std::uint32_t>(grid.tile(tile.left).columns - 1);
+    const auto row = static_cast<std::uint32_t>(grid.tile(tile.down).rows - 1);
+    links[t] = {tile.left * kCells + lane, tile.right * kCells, tile.down * kCells + 16 * row,
+                tile.up * kCells,          tile.columns - 1,    tile.rows};
+  }
+}
+
 const GridLoops& scalarGridLoops() {
   static constexpr GridLoops kLoops{assemble, coarsen, positive,         clean,   apply,   residual,
                                     smooth,   start,   restrictResidual, prolong, advance, direct};

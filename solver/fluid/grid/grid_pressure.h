@@ -23,21 +23,27 @@ class GridPressure {
   /// Kinds of cells, open shares of faces, and where the free surface is: fluid is where particles fill half of a cell
   /// and its surroundings or more; `full` is how many fill a cell. Cost: O(tiles + cut cells in them).
   void begin(const CutGrid& grid, const CutCells& cuts, std::span<const Vec2> centers, const ParticleTiles& particles,
-             double full, FaceField& faces);
-  /// Solves, changes the velocities (FaceComponent::change says by how much) and moves the free bodies. density
-  /// [kg/m²].
-  PressureReport project(const StepContext& context, double density, FaceField& faces);
+             double full, const FreeBodies* bodies, FaceField& faces);
+  /// Solves, changes the velocities (FaceComponent::change says by how much) and moves the free bodies, on which `drag`
+  /// acts besides (by owner, may be empty). density [kg/m²].
+  PressureReport project(const StepContext& context, double density, FaceField& faces,
+                         std::span<const Wrench> drag = {});
+  /// The same but for the bodies, which stay: what friction acts on, before `project` starts from its pressures.
+  PressureReport foresee(const StepContext& context, double density, FaceField& faces);
   /// Finds how particles have to move so that no cell is over-full, and none inside the fluid under-full, and adds it
   /// to the faces' carrier. T. Kugelstadt et al., IEEE Trans. Vis. Comput. Graph. 25(2), 2019. After `project`.
   PressureReport evenOut(FaceField& faces);
-  /// Largest and mean of max(0, density − 1) over the cells of fluid.
-  std::array<double, 2> compression() const;
-  /// visit(const CutWall&, impulse on it [kg m/s], point with its moment [m], place of its cell) for the walls of cells
+  /// Largest and mean of max(0, density − 1) over the cells of fluid, and what all of them hold over their room,
+  /// less 1.
+  std::array<double, 3> compression() const;
+  /// visit(const CutWall&, impulse on it [kg/s], point with its moment [m], place of its cell) for the walls of cells
   /// of fluid; density [kg/m²].
   template <typename Visit>
   void forEachWall(double density, Visit&& visit) const;
 
   std::span<const GridCell> kinds() const { return kind_.span(); }
+  /// Open shares of cells.
+  std::span<const float> areas() const { return area_.span(); }
   /// What particles fill of cells, by what would fill them.
   std::span<const float> densities() const { return density_.span(); }
   /// κ at cell centres.
@@ -50,15 +56,25 @@ class GridPressure {
   struct Listed {
     std::uint32_t cut, place;
   };
+  /// A wall of a cell of fluid, and what its pressure is made of: that of the cell's middle goes on to the wall's.
+  struct Wall {
+    std::uint32_t wall = 0, place = 0;
+    Vec2 center{0, 0}, at{0, 0};  // about which its moment is, and a point that has the normal's [m]
+    WallPressure pressure;
+  };
+  void findWalls(const FreeBodies* bodies);
   void findOpenings(FaceField& faces);
   void fillTile(std::size_t t, FaceField& faces);
+  void listCutCells();
   void findDensity(double full, const FaceField& faces);
   void findFluid(const FaceField& faces);
-  void findSurface(const FaceField& faces);
+  void findSurface(FaceField& faces);
+  void groundSurface(const FaceField& faces);
+  void findExcess(std::size_t t);
+  PressureReport solve(const StepContext& context, double density, FaceField& faces, std::span<const Wrench> drag);
   void findDivergence(const StepContext& context, const FaceField& faces);
-  /// visit(component 0 or 1, place, −(κ_cell − κ_left) as the free surface lets it act) for every face that it acts on.
-  template <typename Visit>
-  void forEachJump(const AlignedArray<float>& kappa, Visit&& visit) const;
+  void findJumps(const AlignedArray<float>& kappa, float speed, const float* solvedX, const float* solvedY,
+                 float* changeX, float* changeY) const;
 
   CutGrid grid_;
   const CutCells* cuts_ = nullptr;
@@ -75,24 +91,25 @@ class GridPressure {
   AlignedArray<float> density_;          // by what particles would fill
   AlignedArray<float> steepX_, steepY_;  // 1, or at a free surface 1/(how far it is from the fluid's cell)
   std::vector<Listed> listed_;           // cut cells of the tiles
+  std::vector<Wall> walls_;
+  std::vector<std::uint8_t> wet_;      // by tile: holds cells of fluid
+  std::vector<std::uint8_t> partial_;  // by tile: a cell in it or in a tile beside it is open in part
 };
 
 template <typename Visit>
 void GridPressure::forEachWall(double density, Visit&& visit) const {
-  for (const Listed& l : listed_) {
-    if (kind_[l.place] != GridCell::Fluid) continue;
-    const CutPart& part = cuts_->parts()[cuts_->cells()[l.cut].part];
-    for (std::uint32_t w = part.wall; w < part.wall + part.wallCount; ++w) {
-      const CutWall& wall = cuts_->walls()[w];
-      const double square = wall.normal.squaredNorm();
-      if (square == 0.0) continue;
-      const Vec2 center = wall.body < 0 ? grid_.origin : centers_[static_cast<std::size_t>(wall.body)];
-      const Vec2 at = center + wall.moment / square * rightNormal(wall.normal);
-      // p·h·dt
-      const double strength =
-          density * grid_.size * grid_.size * grid_.size / dt_ * static_cast<double>(value_[l.place]);
-      visit(wall, Vec2(-strength * wall.normal), at, l.place);
+  const double unit = density * grid_.size * grid_.size * grid_.size / dt_;  // p·h·dt of κ = 1
+  for (const Wall& w : walls_) {
+    const CutWall& wall = cuts_->walls()[w.wall];
+    Vec2 push(0.0, 0.0);
+    double turn = 0.0;
+    for (const WallPressure::Share& share : w.pressure.shares()) {
+      push += static_cast<double>(value_[share.place]) * share.normal;
+      turn += static_cast<double>(value_[share.place]) * share.moment;
     }
+    const double square = push.squaredNorm();
+    const Vec2 at = square > 0.0 ? Vec2(w.center + turn / square * rightNormal(push)) : w.at;
+    visit(wall, Vec2(-unit * push), at, w.place);
   }
 }
 

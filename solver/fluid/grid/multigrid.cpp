@@ -44,20 +44,16 @@ double sumOf(const GridLevel& level) {
   return all;
 }
 
-std::int32_t halved(std::int32_t period) { return (period + 1) / 2; }
-
-void linkTiles(GridLevel& level) {
-  const TileGrid& grid = *level.grid;
-  level.links.resize(level.tiles());
-  constexpr auto kCells = static_cast<std::uint32_t>(TileGrid::kCells);
-  for (std::size_t t = 1; t < level.tiles(); ++t) {
-    const Tile& tile = grid.tile(t);
-    const auto lane = static_cast<std::uint32_t>(grid.tile(tile.left).columns - 1);
-    const auto row = static_cast<std::uint32_t>(grid.tile(tile.down).rows - 1);
-    level.links[t] = {tile.left * kCells + lane, tile.right * kCells, tile.down * kCells + 16 * row,
-                      tile.up * kCells,          tile.columns - 1,    tile.rows};
+// By an eighth, as TileGrid's fields.
+void growTo(AlignedArray<float>& field, std::size_t places) {
+  if (places > field.capacity()) {
+    field.clear();
+    field.reserve(places + places / 8);
   }
+  field.resize(places);
 }
+
+std::int32_t halved(std::int32_t period) { return (period + 1) / 2; }
 
 }  // namespace
 
@@ -81,15 +77,16 @@ void Multigrid::build(const TileGrid& grid, const PressureCoefficients& coeffici
 // The diagonal, and what the loops need beside it.
 void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const AlignedArray<float>& ay,
                        const AlignedArray<float>& ground) {
-  linkTiles(level);
+  linkTiles(*level.grid, level.links);
   const bool finest = &level == &levels_[0];
   const std::size_t places = finest ? ground.size() : level.grid->values();
-  for (AlignedArray<float>* a : {&level.r, &level.one, &level.two}) {
-    a->clear();
-    a->resize(places);
+  const std::array<AlignedArray<float>*, 3> empty{&level.r, &level.one, &level.two};
+  for (AlignedArray<float>* a : empty) {
+    growTo(*a, places);
+    std::fill(a->begin() + level.grid->values(), a->end(), 0.0f);
   }
   for (AlignedArray<float>* a : {&level.ar, &level.diagonal, &level.inverse}) {
-    a->resize(places);
+    growTo(*a, places);
     std::fill_n(a->data(), TileGrid::kCells, 0.0f);
   }
   level.sums.resize(level.tiles());
@@ -97,6 +94,8 @@ void Multigrid::finish(GridLevel& level, const AlignedArray<float>& ax, const Al
                            level.diagonal.data(), level.inverse.data()};
   parallelFor(level.grid->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
     loops_->assemble(parts, level.sums.data(), begin + 1, end + 1);
+    for (AlignedArray<float>* a : empty)
+      std::fill_n(a->data() + (begin + 1) * TileGrid::kCells, (end - begin) * TileGrid::kCells, 0.0f);
   });
   level.coupled = sumOf(level) > 0.0;
   if (finest) addEdges();

@@ -1,6 +1,7 @@
 #include <froude/solver/fluid/grid/particle_tiles.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include <froude/base/parallel.h>
@@ -16,9 +17,32 @@ struct Axis {
   double origin, perCell;
   std::int32_t period;
   std::int32_t cell(double x) const {
-    const auto i = static_cast<std::int32_t>(std::floor((x - origin) * perCell));
+    const double place = (x - origin) * perCell;
+    auto i = static_cast<std::int32_t>(place);
+    i -= static_cast<double>(i) > place ? 1 : 0;
     return period > 0 ? std::clamp(i, 0, period - 1) : i;
   }
+};
+
+// Tiles in the order in which they are met, and their numbers there.
+class Met {
+ public:
+  explicit Met(std::vector<TileIndex>& list) : list_(&list) {
+    list.clear();
+    recent_.fill(0);
+  }
+  std::uint32_t number(const TileIndex& at) {
+    std::uint32_t& recent = recent_[static_cast<std::size_t>((at.y & 15) * 16 + (at.x & 15))];
+    if (recent < list_->size() && (*list_)[recent] == at) return recent;
+    const auto found = std::find(list_->begin(), list_->end(), at);
+    recent = static_cast<std::uint32_t>(found - list_->begin());
+    if (found == list_->end()) list_->push_back(at);
+    return recent;
+  }
+
+ private:
+  std::vector<TileIndex>* list_;
+  std::array<std::uint32_t, 256> recent_;
 };
 
 void sortUnique(std::vector<TileIndex>& list) {
@@ -32,50 +56,74 @@ void ParticleTiles::build(std::span<const double> x, std::span<const double> y, 
   findTiles(x, y, grid);
   addNeighbours(grid);
   tiles_.build(wanted_, {grid.periodX, grid.periodY});
-  key_.resize(x.size());
-  const Axis alongX{grid.origin.x(), 1.0 / grid.size, grid.periodX},
-      alongY{grid.origin.y(), 1.0 / grid.size, grid.periodY};
   parallelFor(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    TileIndex last{std::numeric_limits<std::int32_t>::min(), 0};
-    std::uint32_t tile = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::int32_t i = alongX.cell(x[k]), j = alongY.cell(y[k]);
-      const TileIndex at{i >> 4, j >> 4};
-      if (at != last) {
-        tile = tiles_.find(at.x, at.y);
-        last = at;
-      }
-      key_[k] = tile * static_cast<std::uint32_t>(TileGrid::kCells) +
-                static_cast<std::uint32_t>((j & (kSide - 1)) * kSide + (i & (kSide - 1)));
+    Found& found = found_[begin / kBlock];
+    found.first.resize(found.tiles.size());
+    for (std::size_t k = 0; k < found.tiles.size(); ++k) {
+      found.first[k] = tiles_.find(found.tiles[k].x, found.tiles[k].y) * static_cast<std::uint32_t>(TileGrid::kCells);
     }
+    for (std::size_t k = begin; k < end; ++k) key_[k] = found.first[key_[k] >> 8] + (key_[k] & 255u);
   });
   sort_.sort(key_.span(), tiles_.values());
 }
 
-// Particles stand nearly in order, so that a tile comes up a few times a block.
+// Particles stand nearly in order, so that a tile comes up a few times a block. Keys are numbers of tiles within the
+// block until the tiles are known.
 void ParticleTiles::findTiles(std::span<const double> x, std::span<const double> y, const CutGrid& grid) {
   const std::size_t blocks = blockCount(x.size(), kBlock);
   if (found_.size() < blocks) found_.resize(blocks);
+  key_.resize(x.size());
   const Axis alongX{grid.origin.x(), 1.0 / grid.size, grid.periodX},
       alongY{grid.origin.y(), 1.0 / grid.size, grid.periodY};
   parallelFor(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<TileIndex>& list = found_[begin / kBlock];
-    list.clear();
+    Met met(found_[begin / kBlock].tiles);
     TileIndex last{std::numeric_limits<std::int32_t>::min(), 0};
+    std::uint32_t number = 0;
     for (std::size_t k = begin; k < end; ++k) {
-      const TileIndex at{alongX.cell(x[k]) >> 4, alongY.cell(y[k]) >> 4};
-      if (at == last) continue;
-      list.push_back(at);
-      last = at;
+      const std::int32_t i = alongX.cell(x[k]), j = alongY.cell(y[k]);
+      const TileIndex at{i >> 4, j >> 4};
+      if (at != last) {
+        number = met.number(at);
+        last = at;
+      }
+      key_[k] = number << 8 | static_cast<std::uint32_t>((j & (kSide - 1)) * kSide + (i & (kSide - 1)));
     }
-    sortUnique(list);
   });
   wanted_.clear();
-  for (std::size_t b = 0; b < blocks; ++b) wanted_.insert(wanted_.end(), found_[b].begin(), found_[b].end());
+  for (std::size_t b = 0; b < blocks; ++b)
+    wanted_.insert(wanted_.end(), found_[b].tiles.begin(), found_[b].tiles.end());
   sortUnique(wanted_);
 }
 
+// Without periods the tiles beside sorted ones are sorted too: no list of nine times the length is.
 void ParticleTiles::addNeighbours(const CutGrid& grid) {
+  if (grid.periodX > 0 || grid.periodY > 0) return addWrappedNeighbours(grid);
+  rows_.clear();
+  for (const TileIndex& at : wanted_) {
+    for (std::int32_t dx = -1; dx <= 1; ++dx) {
+      const TileIndex beside{at.x + dx, at.y};
+      if (rows_.empty() || rows_.back() < beside) rows_.push_back(beside);
+    }
+  }
+  wanted_.clear();
+  std::size_t next[3] = {0, 0, 0};  // in the rows, moved down, as they are, moved up
+  auto moved = [&](std::size_t k) {
+    const TileIndex& at = rows_[next[k]];
+    return TileIndex{at.x, at.y + static_cast<std::int32_t>(k) - 1};
+  };
+  while (next[2] < rows_.size()) {
+    TileIndex least = moved(2);
+    for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+      if (next[k] < rows_.size()) least = std::min(least, moved(k));
+    }
+    wanted_.push_back(least);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (next[k] < rows_.size() && moved(k) == least) ++next[k];
+    }
+  }
+}
+
+void ParticleTiles::addWrappedNeighbours(const CutGrid& grid) {
   auto wrapped = [](std::int32_t tile, std::int32_t period) {
     const std::int32_t count = (period + kSide - 1) / kSide;
     return count == 0 ? tile : (tile % count + count) % count;
@@ -94,7 +142,7 @@ void ParticleTiles::addNeighbours(const CutGrid& grid) {
 
 std::size_t ParticleTiles::memoryBytes() const {
   return tiles_.memoryBytes() + sort_.memoryBytes() + key_.capacity() * sizeof(std::uint32_t) +
-         wanted_.capacity() * sizeof(TileIndex);
+         (wanted_.capacity() + rows_.capacity()) * sizeof(TileIndex);
 }
 
 }  // namespace froude

@@ -30,12 +30,17 @@ class ParticleTiles {
  private:
   void findTiles(std::span<const double> x, std::span<const double> y, const CutGrid& grid);
   void addNeighbours(const CutGrid& grid);
+  void addWrappedNeighbours(const CutGrid& grid);
 
   TileGrid tiles_;
   KeySort sort_;
   AlignedArray<std::uint32_t> key_;
-  std::vector<std::vector<TileIndex>> found_;  // by block of particles
-  std::vector<TileIndex> wanted_;
+  struct Found {
+    std::vector<TileIndex> tiles;
+    std::vector<std::uint32_t> first;  // key of each tile's first cell
+  };
+  std::vector<Found> found_;  // by block of particles
+  std::vector<TileIndex> wanted_, rows_;
 };
 
 }  // namespace froude

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <froude/base/assert.h>
+#include <froude/base/parallel.h>
 #include <froude/solver/fluid/grid/closed_regions.h>
 #include <froude/solver/fluid/grid/multigrid.h>
 #include <froude/solver/fluid/grid/pressure_fallback.h>
@@ -15,6 +16,12 @@ constexpr std::size_t kTileBlock = 8;  // tiles a task
 // Of the largest κ: what five terms in single precision cannot tell from zero.
 constexpr float kRounding = 1e-6f;
 constexpr std::size_t kUsefulTiles = 64;  // below, one thread is quicker
+
+void clearInParallel(AlignedArray<float>& field) {
+  constexpr std::size_t kBlock = 16384;
+  parallelFor(field.size(), kBlock,
+              [&](std::size_t begin, std::size_t end) { std::fill(field.begin() + begin, field.begin() + end, 0.0f); });
+}
 
 }  // namespace
 
@@ -88,8 +95,8 @@ void PressureSystem::prepare(const TileGrid& grid, const PressureCoefficients& c
   d.levels.build(grid, coefficients);
   d.regions.find(*d.loops, grid, coefficients, d.levels.finest().inverse.data(), bodies);
   for (AlignedArray<float>* a : {&d.r, &d.p, &d.q}) {
-    a->clear();
     a->resize(coefficients.ground.size());
+    clearInParallel(*a);
   }
 }
 
@@ -189,8 +196,7 @@ PressureReport PressureSystem::solve(const float* b, float* kappa, const Limits&
   const AlignedArray<float>& inverse = d.levels.finest().inverse;
   d.loops->clean(d.levels.finest().matrix, kappa, 0, d.grid->size() + 1);
   for (std::size_t k = d.grid->values(); k < inverse.size(); ++k) kappa[k] = inverse[k] > 0.0f ? kappa[k] : 0.0f;
-  d.p.clear();
-  d.p.resize(inverse.size());
+  clearInParallel(d.p);
   float source = 0.0f;
   Crew::run(d.grid->size() >= kUsefulTiles, [&](Crew& crew) {
     d.findResidual(crew, b, kappa);

@@ -165,6 +165,19 @@ HWY_INLINE Sample sampleOf(const float* field, const Place& p) {
   return {hn::Add(bottom, hn::Mul(p.y, up)), hn::Add(low, hn::Mul(p.y, hn::Sub(high, low))), up};
 }
 
+// Particles on their way along `smooth`, each with what its velocity has beyond that. A function, not a closure: GCC
+// leaves those for other targets than the file's in memory.
+struct Carried {
+  const TileWindow& smooth;
+  VF x, y, ownX, ownY;
+  HWY_INLINE void velocityAfter(float time, VF alongX, VF alongY, VF& u, VF& v) const {
+    const F f;
+    const VF x2 = hn::Add(x, hn::Mul(hn::Set(f, time), alongX)), y2 = hn::Add(y, hn::Mul(hn::Set(f, time), alongY));
+    u = hn::Add(ownX, sampleOf(smooth.u, placeOf(x2, y2, 0.0f, 0.5f)).value);
+    v = hn::Add(ownY, sampleOf(smooth.v, placeOf(x2, y2, 0.5f, 0.0f)).value);
+  }
+};
+
 // Lanes behind the end compute with what stands there, and store nothing.
 void take(const GridParticles& p, const TileWindow& w, const TileWindow& smooth, const TileWindow& shift, float time,
           std::uint32_t begin, std::uint32_t end, const GridMotion& motion) {
@@ -178,14 +191,10 @@ void take(const GridParticles& p, const TileWindow& w, const TileWindow& smooth,
     const VF shiftX = sampleOf(shift.u, atU).value, shiftY = sampleOf(shift.v, atV).value;
     const VF ownX = hn::Sub(u.value, sampleOf(smooth.u, atU).value),
              ownY = hn::Sub(v.value, sampleOf(smooth.v, atV).value);
-    auto stage = [&](float share, VF alongX, VF alongY, VF& u2, VF& v2) HWY_ATTR {
-      const VF x2 = hn::Add(x, hn::Mul(hn::Set(f, share), alongX)), y2 = hn::Add(y, hn::Mul(hn::Set(f, share), alongY));
-      u2 = hn::Add(ownX, sampleOf(smooth.u, placeOf(x2, y2, 0.0f, 0.5f)).value);
-      v2 = hn::Add(ownY, sampleOf(smooth.v, placeOf(x2, y2, 0.5f, 0.0f)).value);
-    };
     VF u2, v2, u3, v3;
-    stage(0.5f * time, u.value, v.value, u2, v2);
-    stage(0.75f * time, u2, v2, u3, v3);
+    const Carried own{smooth, x, y, ownX, ownY};
+    own.velocityAfter(0.5f * time, u.value, v.value, u2, v2);
+    own.velocityAfter(0.75f * time, u2, v2, u3, v3);
     auto path = [&](VF first, VF second, VF third, VF more) HWY_ATTR {
       const VF sum = hn::Add(hn::Add(hn::Mul(hn::Set(f, 2.0f), first), hn::Mul(hn::Set(f, 3.0f), second)),
                              hn::Mul(hn::Set(f, 4.0f), third));

@@ -58,26 +58,27 @@ void ViscosityCoefficients::fromCells(const TileGrid& grid, const GridCell* kind
   });
 }
 
-void ViscosityCoefficients::addWall(const TileGrid& grid, const StickingWall& wall) {
+HeldFaces ViscosityCoefficients::addWall(const TileGrid& grid, const StickingWall& wall) {
+  HeldFaces held;
   const auto [i, j] = grid.cell(wall.place);
   const auto add = [&](AlignedArray<float>& ground, AlignedArray<float>& moved, const AlignedArray<float>& mass,
-                       const std::array<std::size_t, 2>& faces, const std::array<Vec2, 2>& centers, double along,
-                       double speed) {
+                       const std::array<std::size_t, 2>& faces, const std::array<Vec2, 2>& centers,
+                       std::size_t component) {
+    const double along = 1.0 - wall.normal[static_cast<int>(component)] * wall.normal[static_cast<int>(component)];
     const int open = (mass[faces[0]] > 0.0f ? 1 : 0) + (mass[faces[1]] > 0.0f ? 1 : 0);
     for (std::size_t f = 0; f < 2; ++f) {
       if (!(mass[faces[f]] > 0.0f)) continue;
       const double distance = std::max(kNearest, std::abs(wall.normal.dot(centers[f] - wall.point)));
       const double g = wall.length * along / (open * distance);
       ground[faces[f]] += static_cast<float>(g);
-      moved[faces[f]] += static_cast<float>(g * speed);
+      moved[faces[f]] += static_cast<float>(g * wall.velocity[static_cast<int>(component)]);
+      held.face[held.count++] = {component, faces[f], g};
     }
   };
   // Only what slides along the wall is held by friction; towards it, pressure holds.
-  const double alongX = wall.normal.y() * wall.normal.y(), alongY = wall.normal.x() * wall.normal.x();
-  add(groundX, wallX, massX, {wall.place, grid.place(i + 1, j)}, {Vec2(0.0, 0.5), Vec2(1.0, 0.5)}, alongX,
-      wall.velocity.x());
-  add(groundY, wallY, massY, {wall.place, grid.place(i, j + 1)}, {Vec2(0.5, 0.0), Vec2(0.5, 1.0)}, alongY,
-      wall.velocity.y());
+  add(groundX, wallX, massX, {wall.place, grid.place(i + 1, j)}, {Vec2(0.0, 0.5), Vec2(1.0, 0.5)}, 0);
+  add(groundY, wallY, massY, {wall.place, grid.place(i, j + 1)}, {Vec2(0.5, 0.0), Vec2(0.5, 1.0)}, 1);
+  return held;
 }
 
 // The derivative of the sums by each face's velocity: mass, and differences of the stresses beside it.
@@ -124,6 +125,26 @@ void ViscositySystem::apply(const float* u, const float* v, float* outU, float* 
   parallelFor(grid_->size(), kTileBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin + 1; t < end + 1; ++t) applyTile(t, {u, v}, {outU, outV});
   });
+  addBodies(u, v, 0.0, -1.0f, outU, outV);
+}
+
+Eigen::Vector3d ViscousBody::gained(const float* u, const float* v, double own) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Entry& e : entries) {
+    sum += e.g * (static_cast<double>((e.component == 0 ? u : v)[e.place]) - own * e.w) * e.j;
+  }
+  return mobility * sum;
+}
+
+// Faces are held by bodies that move with them: out += sign·k g J q.
+void ViscositySystem::addBodies(const float* u, const float* v, double own, float sign, float* outU,
+                                float* outV) const {
+  for (const ViscousBody& body : bodies_) {
+    const Eigen::Vector3d q = body.gained(u, v, own);
+    for (const ViscousBody::Entry& e : body.entries) {
+      (e.component == 0 ? outU : outV)[e.place] += sign * k_ * static_cast<float>(e.g * e.j.dot(q));
+    }
+  }
 }
 
 // body(component, place, sums) for every face; the sums by tile are joined in the order of tiles: the first added, of
@@ -151,7 +172,11 @@ void ViscositySystem::begin(float* u, float* v) {
     for (AlignedArray<float>* a : {&part.r, &part.p, &part.q, &part.inverse}) grid_->clear(*a);
   }
   sums_.resize(grid_->size() + 1);
-  apply(u, v, parts_[0].q.data(), parts_[1].q.data());
+  // Of free bodies q holds what they do to faces already, with the sign of b − A(u).
+  parallelFor(grid_->size(), kTileBlock, [&](std::size_t first, std::size_t end) {
+    for (std::size_t t = first + 1; t < end + 1; ++t) applyTile(t, {u, v}, {parts_[0].q.data(), parts_[1].q.data()});
+  });
+  addBodies(u, v, 1.0, -1.0f, parts_[0].q.data(), parts_[1].q.data());
   parallelFor(grid_->size(), kTileBlock, [&](std::size_t first, std::size_t end) {
     Window cell, node;
     for (std::size_t t = first + 1; t < end + 1; ++t) {
@@ -178,10 +203,12 @@ void ViscositySystem::begin(float* u, float* v) {
 }
 
 ViscosityReport ViscositySystem::solve(const TileGrid& grid, const ViscosityCoefficients& coefficients, double k,
-                                       float* u, float* v, float tolerance, int mostIterations) {
+                                       float* u, float* v, float tolerance, int mostIterations,
+                                       std::span<const ViscousBody> bodies) {
   FROUDE_ASSERT(k >= 0.0);
   grid_ = &grid;
   coefficients_ = &coefficients;
+  bodies_ = bodies;
   k_ = static_cast<float>(k);
   begin(u, v);
   const std::array<float*, 2> velocity{u, v};

@@ -1,0 +1,13 @@
+# Writes OUTPUT, a source file that holds the files of DIST as string views. Usage: cmake -D OUTPUT=… -D DIST=… -P this
+set(pieces "")
+foreach(pair "kStyle:page.css" "kProgram:page.js" "kNotices:NOTICES.txt")
+  string(REPLACE ":" ";" pair ${pair})
+  list(GET pair 0 name)
+  list(GET pair 1 file)
+  file(READ ${DIST}/${file} hex HEX)
+  string(REGEX REPLACE "(................................)" "\\1\n" hex "${hex}")
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," hex "${hex}")
+  string(APPEND pieces "const unsigned char ${name}Bytes[] = {\n${hex}};\n")
+  string(APPEND views "const std::string_view ${name}(reinterpret_cast<const char*>(${name}Bytes), sizeof ${name}Bytes);\n")
+endforeach()
+file(WRITE ${OUTPUT} "#include \"export/web_files.h\"\n\nnamespace froude::exporting::web {\nnamespace {\n${pieces}}  // namespace\n\n${views}\n}  // namespace froude::exporting::web\n")
