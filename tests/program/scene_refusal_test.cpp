@@ -161,8 +161,8 @@ TEST(SceneRefusal, blocks_of_fluid) {
 
 TEST(SceneRefusal, a_billion_particles_say_the_memory_that_they_would_need) {
   expectRefusals({
-      {kHead + "[model]\nspacing = 1e-6\n[[fluid.block]]\nshape = { box = [0, 0, 2, 1] }\n",
-       "6:11: model.spacing: 2e+12 particles would need ", "PB"},
+      {kHead + "[model]\nspacing = 5e-7\n[[fluid.block]]\nshape = { box = [0, 0, 2, 1] }\n",
+       "6:11: model.spacing: 8e+12 particles would need ", "PB"},
       {kHead + "[bullet]\n[[bullet.block]]\ncount = 4000000000\nshape = { box = [0, 0, 2, 1] }\n",
        "7:9: bullet.block.0.count: 4e+09 particles would need ", "GB"},
   });
