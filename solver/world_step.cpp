@@ -13,7 +13,7 @@ constexpr double kShortestBodyStep = 1.0 / 960.0;  // [s]
 constexpr double kSoftStep = 1.0 / 240.0;          // [s] longest of soft bodies, which divide it further
 // Of the support radius; a soft wall that is stopped within a sub-step stands that much farther in or out of the fluid.
 constexpr double kLargestSoftTravel = 0.125;
-constexpr double kRoom = 0.85;                     // [dx] between a particle that a nozzle lets in and any other
+constexpr double kRoom = 0.85;  // [dx] between a particle that a nozzle lets in and any other
 
 double wrapped(double x, double low, double high) { return x - std::floor((x - low) / (high - low)) * (high - low); }
 
@@ -182,8 +182,7 @@ void World::Impl::advance(double dt, StepStats& stats) {
   if (soft != nullptr) {
     MetFluid met;
     if (fluid != nullptr) {
-      met = {fluid.get(), 1.0 / fluidModel->particleMass(), 0.5 * def.fluid->spacing, filterOf(Species::Fluid),
-             wet};
+      met = {fluid.get(), 1.0 / fluidModel->particleMass(), 0.5 * def.fluid->spacing, filterOf(Species::Fluid), wet};
     }
     soft->advance(context, def.softSettings, bodies, fluid != nullptr ? &met : nullptr, impulses, stats);
   }

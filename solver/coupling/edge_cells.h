@@ -12,7 +12,8 @@ namespace froude {
 /// Rebuilt whole; memory is reused. Lists are in the order of the edges.
 class EdgeCells {
  public:
-  /// `ends`: two for each edge [m]; reach: no edge matters farther from its middle than this [m]. Cost: a counting sort.
+  /// `ends`: two for each edge [m]; reach: no edge matters farther from its middle than this [m]. Cost: a counting
+  /// sort.
   void build(std::span<const Vec2> ends, double reach);
   /// All ends are inside.
   const Box& box() const { return box_; }

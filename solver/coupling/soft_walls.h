@@ -18,14 +18,15 @@ inline constexpr bool isSoftOwner(int owner) { return owner < -1; }
 /// The outlines of one sub-step. Their nodes are where they come to if they keep the velocity that they had on the mean
 /// of the sub-step before: pressures that stay as they were leave them there, for what the pressures were then is in
 /// that velocity. By what changes, nodes give way as the inertia of their share of the body lets them (Fernández,
-/// Mullaert & Vidrascu, Int. J. Numer. Methods Eng. 101 (2015): Robin-Neumann coupling, stable whatever the fluid's mass).
+/// Mullaert & Vidrascu, Int. J. Numer. Methods Eng. 101 (2015): Robin-Neumann coupling, stable whatever the fluid's
+/// mass).
 class SoftWalls {
  public:
   struct Node {
-    Vec2 end{0, 0}, velocity{0, 0};    // at the end of the sub-step [m], during it [m/s]
-    double inverseInertia = 0.0;       // of what gives way with it [m/kg]; 0: held
-    Vec2 expected{0, 0};               // impulse of the pressure in the sub-step before, for this one's length [kg/s]
-    Vec2 impulse{0, 0};                // what the fluid gives it [kg/s]
+    Vec2 end{0, 0}, velocity{0, 0};  // at the end of the sub-step [m], during it [m/s]
+    double inverseInertia = 0.0;     // of what gives way with it [m/kg]; 0: held
+    Vec2 expected{0, 0};             // impulse of the pressure in the sub-step before, for this one's length [kg/s]
+    Vec2 impulse{0, 0};              // what the fluid gives it [kg/s]
   };
   struct Edge {
     std::uint32_t a, b;  // nodes; the solid is to the left
@@ -50,8 +51,8 @@ class SoftWalls {
   /// that `edges` has; at most kMaxWallEdges in all. Returns how many there are then.
   std::size_t edgesNear(const Vec2& x, double radius, double unit, const CollisionFilter& filter,
                         std::span<WallEdge> edges, std::size_t count) const;
-  /// How what acts between a particle at x and the owner's wall within `radius` is shared by the nodes, by a weight that
-  /// falls with the distance from x, along the edges that look at it. Adds to `shares`; the weights' sum is 1.
+  /// How what acts between a particle at x and the owner's wall within `radius` is shared by the nodes, by a weight
+  /// that falls with the distance from x, along the edges that look at it. Adds to `shares`; the weights' sum is 1.
   void share(int owner, const Vec2& x, double radius, std::vector<Share>& shares) const;
 
  private:

@@ -24,8 +24,8 @@ class BodyResponse {
     double mass;     // of a particle [kg/m]
     double impulse;  // of a displacement by dx of one particle, mass·dx/dt [kg/s]
   };
-  /// All free bodies and soft walls, at the start of a pressure solve; null: there are none. Without links a body only loses, in
-  /// `settle`, what its motion had of a pressure.
+  /// All free bodies and soft walls, at the start of a pressure solve; null: there are none. Without links a body only
+  /// loses, in `settle`, what its motion had of a pressure.
   void begin(FreeBodies* bodies, SoftWalls* soft, const Units& units);
   /// The links of `walls` to them, of particles at x, y [m].
   void link(const WallLayer& walls, std::span<const double> x, std::span<const double> y);

@@ -1,5 +1,5 @@
-// Soft walls inside the pressure iterations: how far a fluid's pressures move their nodes, and what that changes for the
-// fluid's densities.
+// Soft walls inside the pressure iterations: how far a fluid's pressures move their nodes, and what that changes for
+// the fluid's densities.
 #pragma once
 
 #include <span>

@@ -70,7 +70,8 @@ void WallLayer::build(const Obstacles& obstacles, const SoftWalls* soft, const C
     std::fill(offset_.begin() + begin, offset_.begin() + end, -1);
     auto visit = [&](std::size_t i) { integrate(obstacles, soft, grid, x, y, static_cast<std::uint32_t>(i), block); };
     if (soft == nullptr) {
-      forEachWithin(obstacles, x, y, begin, end, [&](std::size_t) { return support; }, visit);
+      forEachWithin(
+          obstacles, x, y, begin, end, [&](std::size_t) { return support; }, visit);
       return;
     }
     for (std::size_t i = begin; i < end; ++i) {

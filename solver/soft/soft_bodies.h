@@ -115,7 +115,8 @@ class SoftBodies {
   ParticlePool pool_;
   ColumnId<double> mass_;
   ColumnId<std::uint32_t> bodyOf_;
-  // Of worlds with a fluid: its force on each point [N/m], and the velocity that is expected in the next sub-step [m/s].
+  // Of worlds with a fluid: its force on each point [N/m], and the velocity that is expected in the next sub-step
+  // [m/s].
   struct Wet {
     ColumnId<double> forceX, forceY, nextX, nextY;
   };
@@ -137,9 +138,10 @@ class SoftBodies {
   std::vector<PairTouch> pairTouches_;           // of one part
   SoftPairs pairs_;
   PushedBodies pushed_;
-  std::vector<Vec2> gravityImpulse_, touchImpulse_, pressureImpulse_, momentumBefore_;  // by body, of the sub-step [kg/s]
-  std::vector<int> sweeps_;                                           // by body, of the sub-step
-  std::vector<double> gravityWork_;                                   // by body [J/m]
+  std::vector<Vec2> gravityImpulse_, touchImpulse_, pressureImpulse_,
+      momentumBefore_;               // by body, of the sub-step [kg/s]
+  std::vector<int> sweeps_;          // by body, of the sub-step
+  std::vector<double> gravityWork_;  // by body [J/m]
 };
 
 }  // namespace froude

@@ -44,8 +44,7 @@ SoftWalls& SoftBodies::showWalls(double dt, double reach) {
     const Inertia& inertia = wallInertia_[k];
     const bool held = body(pool_.column(bodyOf_)[i]).inverseMass[i - first_[pool_.column(bodyOf_)[i]]] == 0.0;
     n.inverseInertia = held ? 0.0 : 1.0 / std::min(inertia.own + inertia.rate * dt, inertia.most);
-    n.velocity = !held ? Vec2(pool_.column(wet_->nextX)[i], pool_.column(wet_->nextY)[i])
-                       : Vec2(0.0, 0.0);
+    n.velocity = !held ? Vec2(pool_.column(wet_->nextX)[i], pool_.column(wet_->nextY)[i]) : Vec2(0.0, 0.0);
     n.end = Vec2(pool_.x()[i], pool_.y()[i]) + dt * n.velocity;
     n.expected = dt * Vec2(pool_.column(wet_->forceX)[i], pool_.column(wet_->forceY)[i]);
     n.impulse = Vec2(0.0, 0.0);
@@ -77,14 +76,15 @@ void SoftBodies::rememberMiddle() {
 }
 
 // From the mean velocities of the sub-step's halves. A velocity of one moment would be that of the fastest wave; the
-// mean of the whole is half a sub-step late, which a fluid of more than twice the walls' inertia answers with ever more.
+// mean of the whole is half a sub-step late, which a fluid of more than twice the walls' inertia answers with ever
+// more.
 void SoftBodies::foresee(double dt, int parts) {
   const int before = parts / 2, after = parts - before;
   const double share = static_cast<double>(after) / parts;
   for (std::size_t i = 0; i < count(); ++i) {
     const std::size_t o = offset(i), f = first_[i];
-    auto next = [&](const AlignedArray<double>& start, const AlignedArray<double>& middle, const AlignedArray<double>& end,
-                    std::size_t k) {
+    auto next = [&](const AlignedArray<double>& start, const AlignedArray<double>& middle,
+                    const AlignedArray<double>& end, std::size_t k) {
       const double late = parts * (end[o + k] - middle[o + k]) / (after * dt);
       if (before == 0) return late;
       const double early = parts * (middle[o + k] - start[o + k]) / (before * dt);

@@ -32,9 +32,9 @@ double momentumGap(const World& world) {
   return (t.momentum - l.momentum0 - l.impulse).norm() / t.mass;
 }
 
-// A plate of 1 m × 0.05 m, clamped at both ends, under 2 m of water, as that of Fourey et al. 2017 but of a hundredth of
-// its stiffness, so that ten times fewer parts do. Thin plate, plane strain: w = (ρ g d + ρ_s g t) L⁴/(384 D),
-// D = E t³/(12 (1 − ν²)); that it is stretched as well makes it 1 % stiffer.
+// A plate of 1 m × 0.05 m, clamped at both ends, under 2 m of water, as that of Fourey et al. 2017 but of a hundredth
+// of its stiffness, so that ten times fewer parts do. Thin plate, plane strain: w = (ρ g d + ρ_s g t) L⁴/(384 D), D = E
+// t³/(12 (1 − ν²)); that it is stretched as well makes it 1 % stiffer.
 TEST(LongSoftFluid, a_plate_under_two_metres_of_water_bends_as_the_thin_plate) {
   for (const char* model : {"dfsph"}) {
     SoftDef plate;

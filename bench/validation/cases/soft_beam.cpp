@@ -190,11 +190,12 @@ const Registered kVibration{
 // Thin plate, plane strain: (ρ g d + ρ_s g t) L⁴/(384 D), D = E t³/(12 (1 − ν²)).
 const Registered kPlate{
     {.name = "plate",
-     .measures = "sag of a clamped plate under 2 m of water, mean of the last 40 %, against the thin plate; Fourey et al. "
-                 "2017 (other codes: +6 to −13 %)",
+     .measures =
+         "sag of a clamped plate under 2 m of water, mean of the last 40 %, against the thin plate; Fourey et al. "
+         "2017 (other codes: +6 to −13 %)",
      .scene = "plate",
      .every = 0.002,
-     .full = {{0.05, 0.025}, {}},
+     .full = {{0.1, 0.05, 0.025}, {}},
      .quick = {{0.1}, {{"duration", "0.02"}}},
      .measure = [](const scene::Scene& s) {
        return std::make_unique<TipAtRest>(s, Vec2(0.5, 0.125), Vec2(0.0, -6.86044e-5), 0.1, 0.6);
