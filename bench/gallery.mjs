@@ -1,17 +1,24 @@
 // Makes the pictures of pages in docs/images from shipped scenes. Usage: node bench/gallery.mjs PROGRAM [PICTURE...]
-import { dirname, join } from 'node:path';
+import { symlinkSync } from 'node:fs';
+import { delimiter, dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { froude, openBrowser, openPage, temporaryFolder } from '../tests/page/browser.mjs';
 
 const root = join(dirname(fileURLToPath(import.meta.url)), '..');
-const [program, ...wanted] = process.argv.slice(2);
+const [built, ...wanted] = process.argv.slice(2);
 const browser = await openBrowser(root);
 const out = temporaryFolder();
-const scene = (name) => join(root, 'scenes', `${name}.toml`);
+// Pages show their command: it is to read as a user's, whatever machine draws the pictures.
+symlinkSync(resolve(built), join(out, 'froude'));
+symlinkSync(join(root, 'scenes'), join(out, 'scenes'));
+process.chdir(out);
+process.env.PATH = `${out}${delimiter}${process.env.PATH}`;
+const program = 'froude';
+const scene = (name) => `scenes/${name}.toml`;
 
 /** Runs a scene and shows the frame at a time. */
 async function run(name, until, ...words) {
-  froude(program, ['run', scene(name), '-o', join(out, name), '--frames', 'h5', '--until', String(until), '--quiet', ...words]);
+  froude(program, ['run', scene(name), '-o', name, '--frames', 'h5', '--until', String(until), '--quiet', ...words]);
   const page = await openPage(browser, join(out, name, 'index.html'), { width: 1100, height: 860 });
   await page.evaluate(() => window.froude.player.show(window.froude.store.count - 1));
   return page;
@@ -21,12 +28,11 @@ const pictures = {
   page_run: () => run('gate', 1.2, '--set', 'output.every=0.05'),
   page_soft: () => run('soft_and_fluid', 0.6, '--set', 'output.every=0.05'),
   page_batch: async () => {
-    const folder = join(out, 'dams');
-    froude(program, ['batch', scene('dam_break'), '-o', folder, '--sweep', 'model.spacing=0.006,0.004,0.003', '--sweep', 'gravity=[0,-9.81],[0,-4.9]', '--until', '0.15', '--frames', 'h5', '--quiet']);
-    return openPage(browser, join(folder, 'index.html'), { width: 1100, height: 860 });
+    froude(program, ['batch', scene('dam_break'), '-o', 'dams', '--sweep', 'model.spacing=0.006,0.004,0.003', '--sweep', 'gravity=[0,-9.81],[0,-4.9]', '--until', '0.15', '--frames', 'h5', '--quiet']);
+    return openPage(browser, join(out, 'dams/index.html'), { width: 1100, height: 860 });
   },
   page_field: async () => {
-    froude(program, ['field', join(root, 'scenes/shapes/gear.toml'), '-o', join(out, 'gear.html')]);
+    froude(program, ['field', 'scenes/shapes/gear.toml', '-o', 'gear.html']);
     const page = await openPage(browser, join(out, 'gear.html'), { width: 900, height: 1250 });
     await page.check('input[type=checkbox]');
     const box = await page.locator('canvas').first().boundingBox();
